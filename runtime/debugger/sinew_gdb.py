@@ -69,8 +69,10 @@ def turn_of(quaternion):
 
 
 def place_of(pose):
-    """Of a transform or a jet."""
-    turn = turn_of(pose["rotation"])
+    """Of a transform, a jet or a moving frame."""
+    rotation = pose["rotation"]
+    moving = any(field.name == "omega" for field in rotation.type.fields())
+    turn = turn_of(rotation["value"] if moving else rotation)
     turn = "not turned" if turn == "no turn" else "turned " + turn if "about" in turn else turn
     return "at %s, %s" % (tuple_of(numbers(pose["translation"])), turn)
 
@@ -104,6 +106,10 @@ def matrix(m):
 
 def rotation(q):
     return "%s, xyzw %s" % (turn_of(q), vector(q["m_coeffs"]))
+
+
+def moving_rotation(r):
+    return rotation(r["value"])
 
 
 def time_jet(t):
@@ -151,7 +157,9 @@ TYPES = [  # name, of which types, in which words, with which members besides
     ("Vec3", r"^Eigen::Matrix<%s, 3, 1, 0, 3, 1>$" % SCALAR, vector, ()),
     ("Mat3", r"^Eigen::Matrix<(float|double), 3, 3, 0, 3, 3>$", matrix, ()),
     ("Quat", r"^Eigen::Quaternion<%s, 0>$" % SCALAR, rotation, ()),
-    ("Transform", r"^sinew::Transform<%s ?>$" % SCALAR, place_of, ("rotation", "translation")),
+    ("Transform", r"^sinew::Transform<(float|double)>$", place_of, ("rotation", "translation")),
+    ("MovingTransform", r"^sinew::MovingTransform<(float|double)>$", place_of, ("rotation", "translation")),
+    ("MovingRotation", r"^sinew::MovingRotation<(float|double)>$", moving_rotation, ("omega", "alpha")),
     ("JointJet", r"^sinew::JointJet<(float|double)>$", place_of, ("omega", "alpha", "velocity", "acceleration")),
     ("TimeJet", r"^sinew::TimeJet<(float|double)>$", time_jet, ()),
     ("Status", r"^sinew::Status$", status, ()),

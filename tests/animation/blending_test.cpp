@@ -86,6 +86,25 @@ TEST(Blending, DifferenceAddedInFullToItsReferenceIsTheMotionAgain) {
   }
 }
 
+TEST(Blending, AdditiveMotionWithAReferenceIsItsDifferenceWithout) {
+  const std::vector<Transform<double>> reference = reference_pose();
+  const Pose base = sampled(kWalk, 0.3), motion = sampled(kWave, 0.8);
+  Pose difference(motion.size());
+  subtract_reference<double>(reference, motion, difference);
+  const TimeJet<double> weight{0.7, 0.1, 3};
+  const Pose wanted = blended({{base}, {difference, weight, kMask, BlendMode::kAdditive}}),
+             got = blended({{base}, {motion, weight, kMask, BlendMode::kAdditive, reference}});
+  for (std::size_t j = 0; j < motion.size(); ++j) {  // rounding of a product
+    EXPECT_LT(got[j].rotation.angularDistance(wanted[j].rotation), 1e-7);
+    EXPECT_LT((got[j].alpha - wanted[j].alpha).norm(), 1e-11);
+    EXPECT_LT((got[j].translation - wanted[j].translation).norm(), 1e-14);
+  }
+  std::vector<BlendLayer<double>> layers = {{base}, {motion, weight, {}, BlendMode::kAdditive, reference}};
+  layers[1].reference = layers[1].reference.first(1);
+  Pose out(base.size());
+  EXPECT_EQ((BlendingJob<double>{layers, {}, out}.Run().index), 1);
+}
+
 TEST(Blending, MaskOfZeroLeavesTheBitsBelowAloneAndMaskOfOneCutsThemOut) {
   const Pose a = sampled(kWalk, 0.7), b = sampled(kRun, 0.7);
   const Pose over = blended({{a}, {b, {1, 0, 0}, kMask, BlendMode::kOverride}});

@@ -14,7 +14,7 @@ using fixtures::sampled;
 constexpr double kPi = 3.14159265358979323846;
 const std::vector<int> kParents = {-1, 0, 1, 2, 3, 4, 2, 6, 0, 8, 9};
 const int kJoints = static_cast<int>(kParents.size());
-std::vector<Quat<TimeJet<double>>> scratch(2 * kParents.size());
+std::vector<MovingRotation<double>> scratch(2 * kParents.size());
 
 Quat<double> in_model(const Pose& jets, int joint) {
   return joint < 0 ? Quat<double>::Identity() : in_model(jets, kParents[joint]) * jets[joint].rotation;

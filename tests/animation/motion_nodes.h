@@ -268,7 +268,7 @@ struct MeshAdditiveNode : MotionNode<T> {
   std::vector<int> parents = {-1, 0, 1, 2, 3, 4, 2, 6, 0, 8, 9};
   std::vector<T> mask = {0, 1, T(0.5), T(0.25), 1, 0, T(0.75), 1, 1, 0, T(0.1)};
   std::vector<JointJet<T>> from = std::vector<JointJet<T>>(kNodeJoints), difference = from;
-  std::vector<Quat<TimeJet<T>>> scratch = std::vector<Quat<TimeJet<T>>>(2 * kNodeJoints);
+  std::vector<MovingRotation<T>> scratch = std::vector<MovingRotation<T>>(2 * kNodeJoints);
   void pose(std::span<JointJet<T>> out) override {
     sample<T>(reference, this->now, from);
     sample<T>(aim, this->now, difference);

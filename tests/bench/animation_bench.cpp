@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "bench/rigs.h"
 #include "fixtures/clips.h"
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/inertialize_job.h"
@@ -132,6 +133,30 @@ void two_bone(benchmark::State& state) {
   }
 }
 
+/// Two locked feet and a pelvis.
+void feet(benchmark::State& state) {
+  FootState<float> feet[2];
+  for (auto _ : state) benchmark::DoNotOptimize(bench::place_feet(feet));
+}
+
+/// Spine, chest, neck and head.
+void look_at(benchmark::State& state) {
+  LookState<float> head;
+  for (auto _ : state) benchmark::DoNotOptimize(bench::look(head));
+}
+
+void mirror(benchmark::State& state) {
+  const Clip clip = fixtures::random_clip({});
+  const MirrorMap<float> map = bench::mirror_map(kJoints);
+  std::vector<JointJet<float>> a(kJoints), out(kJoints);
+  (void)SamplingJob<float>{&clip, 1, a}.Run();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(MirrorJob<float>{&map, a, out}.Run());
+    benchmark::ClobberMemory();
+  }
+  per_joint(state);
+}
+
 void skinning(benchmark::State& state) {
   constexpr int kVertices = 10000;
   const std::vector<SkinMatrix> palette(
@@ -153,6 +178,9 @@ void skinning(benchmark::State& state) {
 BENCHMARK(model_pose);
 BENCHMARK(inertialize)->ArgName("moving")->Arg(1)->Arg(kJoints);
 BENCHMARK(two_bone);
+BENCHMARK(feet);
+BENCHMARK(look_at);
+BENCHMARK(mirror);
 BENCHMARK(skinning);
 BENCHMARK_CAPTURE(blend, mix, BlendMode::kMix, false);
 BENCHMARK_CAPTURE(blend, mix_masked, BlendMode::kMix, true);

@@ -2,21 +2,21 @@
 // calls' own. 67 joints, float; or a clip of an asset.
 //
 //     animation_count sample|seek|blend|inertialize|begin|mirror|feet|look|morph CALLS
+//     animation_count mix_masked|override_masked|override_half|additive CALLS
 //     animation_count sample|seek CALLS ASSET.sinew CLIP
 //
-// `sample` plays on by a hundredth of a second, `seek` jumps to and fro.
+// `sample` plays on by a hundredth of a second, `seek` jumps to and fro. Masks are 0.5, that of
+// `override_half` is 0 for the first half of the joints.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "bench/rigs.h"
 #include "fixtures/clips.h"
 #include "sinew/animation/blending_job.h"
-#include "sinew/animation/foot_placement_job.h"
 #include "sinew/animation/inertialize_job.h"
-#include "sinew/animation/look_at_job.h"
-#include "sinew/animation/mirror_job.h"
 #include "sinew/animation/morph_job.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/io/asset.h"
@@ -24,6 +24,7 @@
 namespace {
 
 using namespace sinew;
+using bench::look, bench::mirror_map, bench::place_feet;
 
 /// The clip that is asked for; without joints if there is no such clip.
 Clip clip_of(int argc, char** argv) {
@@ -32,55 +33,6 @@ Clip clip_of(int argc, char** argv) {
   if (!load_asset(argv[3], asset)) return {};
   const int index = asset.find_clip(argv[4]);
   return index < 0 ? Clip() : asset.clips[std::size_t(index)];
-}
-
-/// All joints in pairs.
-MirrorMap<float> mirror_map(int joints) {
-  Skeleton skeleton;
-  skeleton.joints.resize(std::size_t(joints));
-  for (int i = 0; i < joints; ++i)
-    skeleton.joints[std::size_t(i)].name = (i % 2 == 0 ? "l" : "r") + std::to_string(i / 2);
-  MirrorMap<float> map;
-  (void)build_mirror_map(skeleton, map);
-  return map;
-}
-
-/// Pelvis and two legs, locked, the ground where the feet hang.
-bool place_feet(FootState<float> (&states)[2]) {
-  static const int parents[] = {-1, 0, 1, 2, 0, 4, 5};
-  JointJet<float> jets[7];
-  for (const int joint : {2, 3, 5, 6}) jets[joint].translation << 0.05f, 0, -0.4f;
-  FootLeg<float> legs[2] = {{1, 2, 3}, {4, 5, 6}};
-  for (FootLeg<float>& leg : legs) {
-    leg.toe << 0.15f, 0, -0.05f;
-    leg.bend << 1, 0, 0;
-  }
-  const GroundHit<float> hits[2] = {{{0, 0, -0.85f}}, {{0, 0, -0.85f}}};
-  const FootInput<float> feet[2] = {{1, hits, {}}, {1, hits, {}}};
-  FootPlacementJob<float> job;
-  job.parents = parents;
-  job.jets = jets;
-  job.legs = legs;
-  job.feet = feet;
-  job.states = states;
-  job.level = TimeJet<float>(-0.85f);
-  job.step = 0.01f;
-  return job.Run().ok();
-}
-
-/// Spine, chest, neck and head.
-bool look(LookState<float>& state) {
-  static const int parents[] = {-1, 0, 1, 2, 3};
-  JointJet<float> jets[5];
-  for (JointJet<float>& jet : jets) jet.translation << 0, 0, 0.2f;
-  const LookChain<float> chain{4, {1, 2, 3, 4}, {0.1f, 0.2f, 0.3f, 0.4f}, 0};
-  LookAtJob<float> job;
-  job.parents = parents;
-  job.jets = jets;
-  job.chain = &chain;
-  job.state = &state;
-  job.target = still<float>({1, 0.5f, 1});
-  return job.Run().ok();
 }
 
 /// A face: 52 targets that touch 2000 of 20000 vertices each.
@@ -114,7 +66,14 @@ int main(int argc, char** argv) {
   InertialState<float> state{numbers, joints, kShifting};
   (void)begin_inertial<float>(a, b, 1, state);
   state.elapsed = 0.3f;
-  const BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}}};
+  BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}}};
+  std::vector<float> mask(joints, 0.5f);
+  if (job == "override_half") std::fill_n(mask.begin(), joints / 2, 0.f);
+  const bool over = job.starts_with("override"),
+             blends = over || job == "blend" || job == "mix_masked" || job == "additive";
+  if (over || job == "mix_masked") layers[1].mask = mask;
+  if (over) layers[1].mode = BlendMode::kOverride;
+  if (job == "additive") layers[1].mode = BlendMode::kAdditive;
   const MirrorMap<float> mirror = mirror_map(joints);
   FootState<float> feet[2];
   LookState<float> head;
@@ -125,7 +84,7 @@ int main(int argc, char** argv) {
       ok = SamplingJob<float>{&clip, 0.01 * i, out}.Run().ok();
     else if (job == "seek")
       ok = SamplingJob<float>{&clip, clip.duration * double(i * 7919 % 10007) / 10007, out}.Run().ok();
-    else if (job == "blend")
+    else if (blends)
       ok = BlendingJob<float>{layers, {}, out}.Run().ok();
     else if (job == "inertialize")
       ok = InertializeJob<float>{b, &state, {}, out}.Run().ok();
@@ -144,8 +103,9 @@ int main(int argc, char** argv) {
   }
   if (ok) return 0;
   std::fputs(
-      "usage: animation_count sample|seek|blend|inertialize|begin|mirror|feet|look|morph CALLS [ASSET.sinew "
-      "CLIP]\n",
+      "usage: animation_count "
+      "sample|seek|blend|mix_masked|override_masked|override_half|additive|inertialize|"
+      "begin|mirror|feet|look|morph CALLS [ASSET.sinew CLIP]\n",
       stderr);
   return 2;
 }

@@ -67,7 +67,7 @@ TEST_F(CInterfacePoses, BlendsAreThoseOfCpp) {
 TEST_F(CInterfacePoses, LayersInModelSpaceAreThoseOfCpp) {
   const Jets stand = pose("stand", 1);
   Jets added = pose("walk", 0.3), added_cpp = added;
-  std::vector<Quat<TimeJet<float>>> turns(2 * parents.size());
+  std::vector<MovingRotation<float>> turns(2 * parents.size());
   subtract_in_model<float>(parents, stand, added_cpp, turns, added_cpp);
   Jets scratch(2 * parents.size());
   ASSERT_EQ(sinew_asset_subtract_in_model(asset, c(stand), joints, c(added), joints, c(scratch), 2 * joints),

@@ -30,9 +30,10 @@ EXPECTED = {  # variable: by gdb; by Visual Studio, where that differs
     "weight": ("0.5, rate 2, acceleration -4",),
     "moving": ("(0.5, 1, 2), rate (2, 0, 0), acceleration (-4, 0, 0)",
                "(0.5, rate 2, acceleration -4, 1, rate 0, acceleration 0, 2, rate 0, acceleration 0)"),
-    "moving_frame": ("at (3, 2, 1), not turned = {rotation = no turn, xyzw (0, 0, 0, 1), rate (0, 0, 0.75, 0), "
-                     "acceleration (0, 0, 0, -0.5625), translation = (3, 2, 1), rate (0, 0, 0), acceleration (0, 0, 0)}",
-                     None),
+    "moving_frame": ("at (3, 2, 1), not turned = {rotation = no turn, xyzw (0, 0, 0, 1) = {omega = (0, 0, 1.5), "
+                     "alpha = (0, 0, 0)}, translation = (3, 2, 1), rate (0, 0, 0), acceleration (0, 0, 0)}",
+                     "at (3, rate 0, acceleration 0, 2, rate 0, acceleration 0, 1, rate 0, acceleration 0), "
+                     "turned xyzw (0, 0, 0, 1)"),
     "ok": ("ok",),
     "refused": ("kNotFinite at 3: target is not finite",),
     "unread": ("kIo: no such file",),

@@ -13,6 +13,8 @@ Status check(const BlendLayer<T>& layer, std::size_t joints, int index) {
     return Status::error(Code::kInvalidArgument, "layer has fewer joints than the output", index);
   if (!layer.mask.empty() && layer.mask.size() < joints)
     return Status::error(Code::kInvalidArgument, "mask has fewer joints than the output", index);
+  if (!layer.reference.empty() && layer.reference.size() < joints)
+    return Status::error(Code::kInvalidArgument, "reference has fewer joints than the output", index);
   const TimeJet<T>& w = layer.weight;
   if (!std::isfinite(w.value) || !std::isfinite(w.rate) || !std::isfinite(w.acceleration))
     return Status::error(Code::kNotFinite, "weight is not finite", index);
@@ -48,7 +50,8 @@ Status BlendingJob<T>::Run() const {
     data[count++] = {kernels::layout(layer.jets.data()),
                      layer.mask.empty() ? nullptr : layer.mask.data(),
                      {w.value, w.rate, w.acceleration},
-                     static_cast<typename Data::Mode>(layer.mode)};
+                     static_cast<typename Data::Mode>(layer.mode),
+                     layer.reference.empty() ? nullptr : kernels::layout(layer.reference.data())};
   }
   const kernels::BlendData<T> blend{data, count, rest.empty() ? nullptr : kernels::layout(rest.data())};
   SINEW_DISPATCH(blend(blend, static_cast<int>(out.size()), kernels::layout(out.data())));

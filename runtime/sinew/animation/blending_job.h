@@ -24,6 +24,9 @@ struct BlendLayer {
                     T(0)};           ///< ≥ 0; its rates make the blend's derivatives exact (see EaseWeight)
   std::span<const T> mask = {};      ///< [joint] in [0, 1]; empty = 1 everywhere
   BlendMode mode = BlendMode::kMix;  ///< how it joins what is below it
+  /// Of an additive layer that is a motion: the pose that it differs from, as `subtract_reference` takes it.
+  /// Empty: the layer is a difference already.
+  std::span<const Transform<T>> reference = {};
 };
 
 /// Blends jets joint by joint. Rotations are summed as quaternions in R⁴ and normalised; all derivatives are

@@ -35,9 +35,16 @@ bool is_zero(const TimeJet<T>& x) {
   return x.value == T(0) && x.rate == T(0) && x.acceleration == T(0);
 }
 
+/// A point and a direction that are fixed to a ground, in model space.
 template <class T>
-MovingTransform<T> frame_of(int ground, Grounds<T> grounds) {
-  return ground >= 0 ? grounds[std::size_t(ground)] : MovingTransform<T>();
+MovingVector<T> point_of(int ground, Grounds<T> grounds, const std::array<T, 3>& point) {
+  const Vec3<T> p = vector_of(point);
+  return ground < 0 ? still<T>(p) : grounds[std::size_t(ground)] * p;
+}
+template <class T>
+MovingVector<T> direction_of(int ground, Grounds<T> grounds, const std::array<T, 3>& direction) {
+  const Vec3<T> d = vector_of(direction);
+  return ground < 0 ? still<T>(d) : grounds[std::size_t(ground)].rotation * d;
 }
 
 /// A plane as a height over x and y, in model space, as it moves.
@@ -52,9 +59,8 @@ struct MovingPlane {
 };
 template <class T>
 MovingPlane<T> plane_of(const FootState<T>& state, Grounds<T> grounds) {
-  const MovingTransform<T> ground = frame_of<T>(state.ground, grounds);
-  const MovingVector<T> normal = ground.rotation * still<T>(vector_of(state.normal));
-  return {ground * still<T>(vector_of(state.point)),
+  const MovingVector<T> normal = direction_of<T>(state.ground, grounds, state.normal);
+  return {point_of<T>(state.ground, grounds, state.point),
           {-(normal.x() / normal.z()), -(normal.y() / normal.z())}};
 }
 
@@ -69,17 +75,12 @@ T height_at(const GroundHit<T>& hit, T steepest, T x, T y) {
   return hit.point.z() - fall / hit.normal.z();
 }
 
-template <class T>
-Quat<T> value_of(const Quat<TimeJet<T>>& q) {
-  return {q.w().value, q.x().value, q.y().value, q.z().value};
-}
 /// A point of the model in the axes of a ground.
 template <class T>
 std::array<T, 3> on_ground(int ground, Grounds<T> grounds, const Vec3<T>& point) {
   if (ground < 0) return array_of(point);
   const MovingTransform<T>& body = grounds[std::size_t(ground)];
-  return array_of<T>(value_of(body.rotation).conjugate() *
-                     Vec3<T>(point - sinew::value_of<T>(body.translation)));
+  return array_of<T>(body.rotation.value.conjugate() * Vec3<T>(point - value_of<T>(body.translation)));
 }
 
 template <class T>
@@ -89,7 +90,7 @@ void lay_plane(const GroundHit<T>& hit, T steepest, Grounds<T> grounds, FootStat
   state.point = on_ground<T>(hit.ground, grounds, hit.point);
   state.normal = hit.ground < 0
                      ? array_of(normal)
-                     : array_of<T>(value_of(grounds[std::size_t(hit.ground)].rotation).conjugate() * normal);
+                     : array_of<T>(grounds[std::size_t(hit.ground)].rotation.value.conjugate() * normal);
 }
 
 /// What of a foot's target does not depend on where it goes.
@@ -99,7 +100,7 @@ struct Stance {
   TimeJet<T> grip;        ///< 0 = as animated … 1 = on the ground
   MovingPlane<T> plane;
   TimeJet<T> upright;               ///< z of the normal that the foot lies to
-  Quat<TimeJet<T>> rotation;        ///< of the foot, wanted
+  MovingRotation<T> rotation;       ///< of the foot, wanted
   TimeJet<T> toe, heel;             ///< m, height over the animation's ground
   MovingVector<T> to_toe, to_heel;  ///< from the ankle, wanted
 };
@@ -131,8 +132,8 @@ Stance<T> stance_of(const FootMotion<T>& motion, Grounds<T> grounds, const FootS
     s.heel += s.grip * flat;
   }
   s.rotation = shortest_arc<T>(still<T>(Vec3<T>::UnitZ()), normal) * s.rotation;
-  s.to_toe = s.rotation * still<T>(motion.toe);
-  s.to_heel = s.rotation * still<T>(motion.heel);
+  s.to_toe = s.rotation * motion.toe;
+  s.to_heel = s.rotation * motion.heel;
   return s;
 }
 
@@ -156,7 +157,7 @@ template <class T>
 MovingVector<T> pivot_target(const Stance<T>& s, const FootMotion<T>& motion, Grounds<T> grounds,
                              const FootState<T>& state, const MovingVector<T>& fading) {
   MovingVector<T> p = motion.toe_at;
-  if (state.locked()) p = frame_of<T>(state.ground, grounds) * still<T>(vector_of(state.lock));
+  if (state.locked()) p = point_of<T>(state.ground, grounds, state.lock);
   p.x() += fading.x();
   p.y() += fading.y();
   p.z() = s.plane.height(p.x(), p.y()) + state.height.x + fading.z() + clearance(s, state.hold);
@@ -179,7 +180,7 @@ template <class T>
 FootHold wanted_hold(const FootMotion<T>& motion, const FootSettings<T>& settings, T contact, bool reached,
                      Grounds<T> grounds, const FootState<T>& state) {
   if (state.locked()) {
-    const MovingVector<T> lock = frame_of<T>(state.ground, grounds) * still<T>(vector_of(state.lock));
+    const MovingVector<T> lock = point_of<T>(state.ground, grounds, state.lock);
     const MovingVector<T>& animated = state.hold == FootHold::kHeel ? motion.heel_at : motion.toe_at;
     if (contact < settings.release_at || !reached || apart_on_ground<T>(lock, animated) > settings.farthest)
       return FootHold::kFree;

@@ -90,16 +90,16 @@ struct FootMotion {
       : foot(joint),
         toe(under_ball),
         heel(under_heel),
-        toe_at(joint * still<T>(under_ball)),
-        heel_at(under_heel == under_ball ? toe_at : MovingVector<T>(joint * still<T>(under_heel))),
+        toe_at(joint * under_ball),
+        heel_at(under_heel == under_ball ? toe_at : joint * under_heel),
         level(floor) {}
 };
 
 /// A foot's target: where its joint shall be, and how it lies.
 template <class T>
 struct FootTarget {
-  MovingVector<T> ankle;      ///< m, model space: origin of the foot joint
-  Quat<TimeJet<T>> rotation;  ///< foot joint → model
+  MovingVector<T> ankle;       ///< m, model space: origin of the foot joint
+  MovingRotation<T> rotation;  ///< foot joint → model
 };
 
 /// Moves a foot's state h seconds on.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/soft_limits.h"
 
 namespace sinew {
@@ -22,7 +21,8 @@ template <class T>
 struct Placed {
   FootMotion<T> motion;
   FootTarget<T> target;
-  MovingVector<T> hip, pole;
+  LimbMotion<T> limb;
+  MovingVector<T> pole;
   TimeJet<T> length;  ///< m
 };
 
@@ -34,7 +34,7 @@ TimeJet<T> distance(const MovingVector<T>& a, const MovingVector<T>& b) {
 /// How far the hip, shifted sideways, has to come down for the leg to be `reach` of its length.
 template <class T>
 TimeJet<T> missing(const Placed<T>& leg, const MovingVector<T>& shift, T reach) {
-  const MovingVector<T> down = leg.hip + shift - leg.target.ankle;
+  const MovingVector<T> down = leg.limb.upper.translation + shift - leg.target.ankle;
   const TimeJet<T> longest = reach * leg.length, square = longest * longest;
   const T flattest = T(kFlattest) * leg.length.value;
   const TimeJet<T> high = square - down.x() * down.x() - down.y() * down.y();
@@ -82,27 +82,22 @@ void shift_joint(const FootPlacementJob<T>& job, int joint, const MovingVector<T
   jet.acceleration = acceleration_of<T>(local.translation);
 }
 
-/// Gives a joint a rotation in model space.
 template <class T>
-void turn_to(const FootPlacementJob<T>& job, int joint, const Quat<TimeJet<T>>& rotation) {
-  JointJet<T>& jet = job.jets[std::size_t(joint)];
-  const MovingTransform<T> parent = model_motion<T>(job.jets, job.parents, job.parents[std::size_t(joint)]);
-  set_rotation<T>(parent.rotation.conjugate() * rotation, jet);
+LimbMotion<T> limb_motion(const FootPlacementJob<T>& job, std::size_t k) {
+  const FootLeg<T>& leg = job.legs[k];
+  return {job.jets, job.parents, leg.upper, leg.middle, leg.foot};
 }
 
 template <class T>
 Placed<T> place(const FootPlacementJob<T>& job, std::size_t k) {
   const FootLeg<T>& leg = job.legs[k];
-  const std::span<const JointJet<T>> jets = job.jets;
-  const MovingTransform<T> upper = model_motion<T>(jets, job.parents, leg.upper);
-  const MovingTransform<T> middle = upper * model_motion<T>(jets, job.parents, leg.middle, leg.upper);
-  const MovingTransform<T> foot = middle * model_motion<T>(jets, job.parents, leg.foot, leg.middle);
   Placed<T> placed;
+  placed.limb = job.limbs.empty() ? limb_motion(job, k) : job.limbs[k];
+  const MovingTransform<T>&upper = placed.limb.upper, &foot = placed.limb.end;
   placed.motion = FootMotion<T>(foot, leg.toe, leg.heel, job.level);
-  placed.hip = upper.translation;
-  placed.pole = upper.rotation * still<T>(leg.bend);
-  placed.length = distance<T>(upper.translation, middle.translation) +
-                  distance<T>(middle.translation, placed.motion.foot.translation);
+  placed.pole = upper.rotation * leg.bend;
+  const MovingVector<T>& knee = placed.limb.middle.translation;
+  placed.length = distance<T>(upper.translation, knee) + distance<T>(knee, foot.translation);
   FootState<T>& state = job.states[k];
   step_foot<T>(job.settings, job.step, state);
   find_ground<T>(placed.motion, job.settings, job.feet[k], job.grounds, state);
@@ -117,12 +112,10 @@ Status reach_for(const FootPlacementJob<T>& job, std::size_t k, const Placed<T>&
   bones.target = placed.target.ankle;
   bones.pole = placed.pole;
   bones.hinge = leg.hinge;
-  bones.keep_end = false;
   bones.softness = std::max(T(kSoftest), T(kLongest - kSpare) - job.reach);  // in float less at reach 0.998
-  if (Status status = bones.Run(); !status)
-    return Status::error(status.code, status.reason, static_cast<int>(k));
-  turn_to<T>(job, leg.foot, placed.target.rotation);
-  return {};
+  Status status = bones.Validate();
+  if (status) status = bones.Run(placed.limb, &placed.target.rotation);
+  return status ? status : Status::error(status.code, status.reason, static_cast<int>(k));
 }
 
 Status check_joints(std::span<const int> parents, std::size_t joints, int pelvis) {
@@ -184,6 +177,8 @@ Status FootPlacementJob<T>::Validate() const {
   if (Status status = check_settings(*this); !status) return status;
   if (legs.size() > kMostLegs || feet.size() < legs.size() || states.size() < legs.size())
     return Status::error(Code::kInvalidArgument, "more than eight legs, or fewer inputs or states than legs");
+  if (!limbs.empty() && limbs.size() < legs.size())
+    return Status::error(Code::kInvalidArgument, "fewer limbs than legs");
   for (std::size_t k = 0; k < legs.size(); ++k) {
     for (const int joint : {legs[k].upper, legs[k].middle, legs[k].foot})
       if (joint < 0 || std::size_t(joint) >= jets.size())
@@ -207,9 +202,10 @@ Status FootPlacementJob<T>::Run() const {
   shift_joint<T>(*this, pelvis, shift);
   Status first;
   for (std::size_t k = 0; k < legs.size(); ++k) {
+    placed[k].limb.shift(shift);
     const Status status = reach_for<T>(*this, k, placed[k]);
     if (first.ok()) first = status;
-    const T far = distance<T>(placed[k].hip + shift, placed[k].target.ankle).value;
+    const T far = distance<T>(placed[k].limb.upper.translation, placed[k].target.ankle).value;
     const bool reached = far < T(kLongest) * placed[k].length.value;
     change_hold<T>(placed[k].motion, settings, feet[k].contact, reached, grounds, states[k]);
   }

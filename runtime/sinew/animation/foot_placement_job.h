@@ -5,6 +5,7 @@
 
 #include "sinew/animation/foot_leg.h"
 #include "sinew/animation/foot_lock.h"
+#include "sinew/animation/inverse_kinematics.h"
 
 namespace sinew {
 
@@ -38,6 +39,8 @@ struct FootPlacementJob {
   T follow = T(0.5);   ///< part of the feet's mean shift sideways that the pelvis takes, in [0, 1]
   T rise = T(0.07);    ///< s, half of the way up, > 0
   T deepest = T(0.3);  ///< m, that the pelvis comes down at most
+  /// [leg] as `jets` move them, of who has cast rays from them; empty: they are worked out.
+  std::span<const LimbMotion<T>> limbs = {};
 
   Status Validate() const;  ///< `Status::index`: leg at fault
   /// Places what it can: a leg that finds no plane to bend in keeps its pose, the others do not; the first

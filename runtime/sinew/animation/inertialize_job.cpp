@@ -93,7 +93,8 @@ Status InertializeJob<T>::Run() const {
   if (Status status = Validate(); !status) return status;
   if (out.empty()) return {};
   if (!state->running()) {
-    if (out.data() != destination.data()) std::copy_n(destination.data(), out.size(), out.data());
+    if (out.data() != destination.data())
+      std::copy_n(kernels::layout(destination.data()), out.size(), kernels::layout(out.data()));
     return {};
   }
   kernels::OffsetFade<T> fade{numbers_of(*state), state->elapsed, state->duration};

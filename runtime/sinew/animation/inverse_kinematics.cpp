@@ -43,8 +43,8 @@ MovingVector<T> part_normal_to(const MovingVector<T>& unit, const MovingVector<T
 
 /// Turns a joint, whose model rotation `was` so with its parents as they are by now, to what it `becomes`.
 template <class T>
-void turn_joint(const Quat<TimeJet<T>>& was, const Quat<TimeJet<T>>& becomes, JointJet<T>& jet) {
-  set_rotation<T>(moving_transform(jet).rotation * (was.conjugate() * becomes), jet);
+void turn_joint(const MovingRotation<T>& was, const MovingRotation<T>& becomes, JointJet<T>& jet) {
+  set_rotation<T>(moving_rotation(jet) * (was.conjugate() * becomes), jet);
 }
 
 }  // namespace
@@ -69,10 +69,13 @@ template <class T>
 Status TwoBoneJob<T>::Run() const {
   if (Status status = Validate(); !status) return status;
   if (is_zero(weight)) return {};
-  const std::span<const JointJet<T>> before = jets;
-  const MovingTransform<T> a = model_motion(before, parents, upper);
-  const MovingTransform<T> b = a * model_motion(before, parents, middle, upper);
-  const MovingTransform<T> c = b * model_motion(before, parents, end, middle);
+  const LimbMotion<T> limb(jets, parents, upper, middle, end);
+  return Run(limb, keep_end ? &limb.end.rotation : nullptr);
+}
+
+template <class T>
+Status TwoBoneJob<T>::Run(const LimbMotion<T>& limb, const MovingRotation<T>* end_rotation) const {
+  const MovingTransform<T>&a = limb.upper, &b = limb.middle, &c = limb.end;
   const MovingVector<T> first = b.translation - a.translation, second = c.translation - b.translation;
   const TimeJet<T> l1 = length<T>(first), l2 = length<T>(second);
   const MovingVector<T> wanted = c.translation + (target - c.translation) * weight - a.translation;
@@ -93,17 +96,17 @@ Status TwoBoneJob<T>::Run() const {
   const TimeJet<T> x = (reach * reach + l1 * l1 - l2 * l2) / (reach + reach), y = sqrt(l1 * l1 - x * x);
   const MovingVector<T> knee = along * x + side * y, shin = along * reach - knee;
 
-  Quat<TimeJet<T>> swing = shortest_arc<T>(first, knee);
+  MovingRotation<T> swing = shortest_arc<T>(first, knee);
   if (!hinge.isZero()) {
     const MovingVector<T> unit = knee / l1, normal = along.cross(side);
-    const MovingVector<T> axis = part_normal_to<T>(unit, swing * (b.rotation * still<T>(hinge)));
+    const MovingVector<T> axis = part_normal_to<T>(unit, swing * (b.rotation * hinge));
     swing = shortest_arc<T>(axis, axis.dot(normal).value < T(0) ? MovingVector<T>(-normal) : normal) * swing;
   }
-  const Quat<TimeJet<T>> bend = shortest_arc<T>(swing * second, shin);
-  const Quat<TimeJet<T>> shin_was = swing * b.rotation;
+  const MovingRotation<T> bend = shortest_arc<T>(swing * second, shin);
+  const MovingRotation<T> shin_was = swing * b.rotation;
   turn_joint<T>(a.rotation, swing * a.rotation, jets[upper]);
   turn_joint<T>(shin_was, bend * shin_was, jets[middle]);
-  if (keep_end) turn_joint<T>(bend * (swing * c.rotation), c.rotation, jets[end]);
+  if (end_rotation) turn_joint<T>(bend * (swing * c.rotation), *end_rotation, jets[end]);
   return {};
 }
 
@@ -126,12 +129,12 @@ Status AimJob<T>::Run() const {
   if (is_zero(weight)) return {};
   const std::span<const JointJet<T>> before = jets;
   const MovingTransform<T> frame = model_motion(before, parents, joint);
-  const MovingVector<T> wanted = target - frame.translation, now = frame.rotation * still<T>(axis);
+  const MovingVector<T> wanted = target - frame.translation, now = frame.rotation * axis;
   const TimeJet<T> far = length<T>(wanted);
   // Opposite directions leave the way round open: too far to choose.
   if (!(far.value > T(0)) || value_of<T>(now).dot(value_of<T>(wanted)) < T(-0.99999) * far.value)
     return Status::error(Code::kOutOfRange, "target at the joint, or straight behind it", joint);
-  Quat<TimeJet<T>> turn = shortest_arc<T>(now, wanted);
+  Quat<TimeJet<T>> turn = moving_quaternion(shortest_arc<T>(now, wanted));
   const T widest = portable::cos(limit / 2);
   if (turn.w().value < widest) {
     const TimeJet<T> sine = length<T>(turn.vec());
@@ -140,7 +143,7 @@ Status AimJob<T>::Run() const {
   }
   for (int i = 0; i < 4; ++i) turn.coeffs()[i] *= weight;
   turn.w() += TimeJet<T>(T(1)) - weight;
-  turn_joint<T>(frame.rotation, turn * frame.rotation, jets[joint]);
+  turn_joint<T>(frame.rotation, moving_rotation(turn) * frame.rotation, jets[joint]);
   return {};
 }
 

@@ -12,6 +12,24 @@
 
 namespace sinew {
 
+/// The three joints of a limb in model space.
+template <class T>
+struct LimbMotion {
+  MovingTransform<T> upper, middle, end;  ///< joint → model
+
+  LimbMotion() = default;
+  /// Of joints one below the other.
+  LimbMotion(std::span<const JointJet<T>> jets, std::span<const int> parents, int upper_joint,
+             int middle_joint, int end_joint)
+      : upper(model_motion<T>(jets, parents, upper_joint)),
+        middle(upper * model_motion<T>(jets, parents, middle_joint, upper_joint)),
+        end(middle * model_motion<T>(jets, parents, end_joint, middle_joint)) {}
+  /// The limb is carried along.
+  void shift(const MovingVector<T>& by) {
+    for (MovingTransform<T>* joint : {&upper, &middle, &end}) joint->translation += by;
+  }
+};
+
 /// Turns two joints of a limb so that the end joint's origin comes to the target: hip and knee, shoulder and
 /// elbow. Joints in between (twist bones) ride along. Allocates nothing. Model space: the axes of the root's
 /// parent.
@@ -41,6 +59,9 @@ struct TwoBoneJob {
   /// Refuses as well a target at the upper joint, a bone without length, and a limb that has no plane to bend
   /// in. On an error `jets` are left as they were.
   Status Run() const;
+  /// The same where it is known what Validate() says and how the limb moves, and where the end joint is to
+  /// lie: to this rotation in model space it turns, or, without one, it rides along.
+  Status Run(const LimbMotion<T>& limb, const MovingRotation<T>* end_rotation) const;
 };
 
 /// Turns one joint so that an axis of it points to a target: a head, an eye, a weapon. Several joints of a

@@ -145,15 +145,16 @@ Axes<T> axes_of(const LookAtJob<T>& job) {
   const LookChain<T>& c = *job.chain;
   const MovingTransform<T> base =
       c.base < 0 ? MovingTransform<T>() : model_motion<T>(job.jets, job.parents, c.base);
-  return {base.rotation * still<T>(c.forward), base.rotation * still<T>(c.up.cross(c.forward)),
-          base.rotation * still<T>(c.up)};
+  return {base.rotation * c.forward, base.rotation * Vec3<T>(c.up.cross(c.forward)), base.rotation * c.up};
 }
 
 /// The chain in model space, and how far it has been turned so far.
 template <class T>
 struct Chain {
   MovingTransform<T> frames[LookChain<T>::kMost];  ///< as animated
-  Quat<TimeJet<T>> turned = MovingTransform<T>().rotation;
+  MovingVector<T> gaze;                            ///< where the last one looks, as animated
+  MovingVector<T> place;                           ///< m, of the next joint, where those before carry it
+  MovingRotation<T> turned;
 };
 template <class T>
 Chain<T> chain_of(const LookAtJob<T>& job) {
@@ -163,6 +164,8 @@ Chain<T> chain_of(const LookAtJob<T>& job) {
   chain.frames[0] = model_motion<T>(jets, job.parents, c.joints[0]);
   for (int k = 1; k < c.count; ++k)
     chain.frames[k] = chain.frames[k - 1] * model_motion<T>(jets, job.parents, c.joints[k], c.joints[k - 1]);
+  chain.gaze = chain.frames[c.count - 1].rotation * c.axis;
+  chain.place = chain.frames[0].translation;
   return chain;
 }
 
@@ -171,18 +174,16 @@ template <class T>
 Status turn_joint(const LookAtJob<T>& job, int k, const MovingVector<T>& wanted, const TimeJet<T>& part,
                   Chain<T>& chain) {
   const LookChain<T>& c = *job.chain;
-  const MovingVector<T> now = chain.turned * (chain.frames[c.count - 1].rotation * still<T>(c.axis));
+  const MovingVector<T> now = chain.turned * chain.gaze;
   if (value_of<T>(now).dot(value_of<T>(wanted)) < T(-0.9999))
     return Status::error(Code::kOutOfRange, "looks the opposite way", c.joints[k]);
-  Quat<TimeJet<T>> turn = shortest_arc<T>(now, wanted);
-  for (int i = 0; i < 4; ++i) turn.coeffs()[i] *= part;
-  turn.w() += TimeJet<T>(T(1)) - part;
-  const TimeJet<T> length = sqrt(turn.squaredNorm());
-  for (int i = 0; i < 4; ++i) turn.coeffs()[i] /= length;
+  const MovingRotation<T> turn = shortest_arc<T>(now, wanted, part);
   JointJet<T>& jet = job.jets[std::size_t(c.joints[k])];
-  const Quat<TimeJet<T>> was = chain.turned * chain.frames[k].rotation;
-  set_rotation<T>(moving_transform(jet).rotation * (was.conjugate() * (turn * was)), jet);
+  const MovingRotation<T> was = chain.turned * chain.frames[k].rotation;
+  set_rotation<T>(moving_rotation(jet) * (was.conjugate() * (turn * was)), jet);
   chain.turned = turn * chain.turned;
+  if (k + 1 < c.count)
+    chain.place += chain.turned * (chain.frames[k + 1].translation - chain.frames[k].translation);
   return {};
 }
 
@@ -200,8 +201,7 @@ Status turn_chain(Turn<T>& turn, Chain<T>& chain) {
     if (Status status = turn_joint<T>(job, k, body, share / left, chain); !status) return status;
     left -= share;
   }
-  const MovingVector<T> carried = model_motion<T>(job.jets, job.parents, c.joints[last]).translation;
-  const MovingVector<T> head = direction(turn.axes, turn.look(carried, job.state->head));
+  const MovingVector<T> head = direction(turn.axes, turn.look(chain.place, job.state->head));
   const TimeJet<T> share = c.shares[last] * job.weight;
   return turn_joint<T>(job, last, head, share / (share + TimeJet<T>(T(1)) - job.weight), chain);
 }

@@ -6,27 +6,27 @@ namespace sinew {
 namespace {
 
 template <class T>
-Quat<TimeJet<T>> in_model(std::span<const int> parents, const JointJet<T>& jet, std::size_t joint,
-                          std::span<const Quat<TimeJet<T>>> model) {
-  const Quat<TimeJet<T>> local = moving_transform(jet).rotation;
-  return parents[joint] < 0 ? local : Quat<TimeJet<T>>(model[std::size_t(parents[joint])] * local);
+MovingRotation<T> in_model(std::span<const int> parents, const JointJet<T>& jet, std::size_t joint,
+                           std::span<const MovingRotation<T>> model) {
+  const MovingRotation<T> local = moving_rotation(jet);
+  return parents[joint] < 0 ? local : model[std::size_t(parents[joint])] * local;
 }
 
 /// (1 − w)·1 + w·δ, of ±δ the nearer to 1.
 template <class T>
-Quat<TimeJet<T>> part_of(const JointJet<T>& difference, const TimeJet<T>& w) {
-  Quat<TimeJet<T>> q = moving_transform(difference).rotation;
+MovingRotation<T> part_of(const JointJet<T>& difference, const TimeJet<T>& w) {
+  Quat<TimeJet<T>> q = moving_quaternion(moving_rotation(difference));
   const T sign = q.w().value < T(0) ? T(-1) : T(1);
   for (int i = 0; i < 4; ++i) q.coeffs()[i] = w * (sign * q.coeffs()[i]);
   q.w() += TimeJet<T>(T(1)) - w;
-  return q;
+  return moving_rotation(q);
 }
 
 }  // namespace
 
 template <class T>
 void subtract_in_model(std::span<const int> parents, std::span<const JointJet<T>> reference,
-                       std::span<const JointJet<T>> jets, std::span<Quat<TimeJet<T>>> scratch,
+                       std::span<const JointJet<T>> jets, std::span<MovingRotation<T>> scratch,
                        std::span<JointJet<T>> out) {
   const std::size_t joints = out.size();
   const std::span model = scratch.first(joints), from = scratch.subspan(joints, joints);
@@ -77,8 +77,8 @@ Status MeshAdditiveJob<T>::Run() const {
     } else if (!touched(parent)) {
       continue;
     }
-    const Quat<TimeJet<T>> local =
-        parent < 0 ? turned[i] : Quat<TimeJet<T>>(turned[std::size_t(parent)].conjugate() * turned[i]);
+    const MovingRotation<T> local =
+        parent < 0 ? turned[i] : turned[std::size_t(parent)].conjugate() * turned[i];
     set_rotation<T>(local, jets[i]);
   }
   return {};

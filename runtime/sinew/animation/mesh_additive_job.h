@@ -13,7 +13,7 @@ namespace sinew {
 /// `out` may be `jets`. Parents stand before their children; spans of equal length.
 template <class T>
 void subtract_in_model(std::span<const int> parents, std::span<const JointJet<T>> reference,
-                       std::span<const JointJet<T>> jets, std::span<Quat<TimeJet<T>>> scratch,
+                       std::span<const JointJet<T>> jets, std::span<MovingRotation<T>> scratch,
                        std::span<JointJet<T>> out);
 
 /// Adds such a layer: G = ((1 − w)·1 + w·δ)·G_below, written back as local rotations, with exact derivatives.
@@ -26,16 +26,16 @@ struct MeshAdditiveJob {
   std::span<const JointJet<T>> difference;  ///< [joint] of `subtract_in_model`
   TimeJet<T> weight{T(1)};                  ///< ≥ 0
   std::span<const T> mask = {};             ///< [joint] in [0, 1]; empty = 1
-  std::span<Quat<TimeJet<T>>> scratch;      ///< two per joint
+  std::span<MovingRotation<T>> scratch;     ///< two per joint
 
   Status Validate() const;  ///< what Run() refuses; `Status::index`: joint at fault
   Status Run() const;       ///< on an error `jets` are left as they were
 };
 
-#define SINEW_MESH_ADDITIVE_INSTANCES(prefix, T)                                                       \
-  prefix template void subtract_in_model<T>(std::span<const int>, std::span<const JointJet<T>>,        \
-                                            std::span<const JointJet<T>>, std::span<Quat<TimeJet<T>>>, \
-                                            std::span<JointJet<T>>);                                   \
+#define SINEW_MESH_ADDITIVE_INSTANCES(prefix, T)                                                        \
+  prefix template void subtract_in_model<T>(std::span<const int>, std::span<const JointJet<T>>,         \
+                                            std::span<const JointJet<T>>, std::span<MovingRotation<T>>, \
+                                            std::span<JointJet<T>>);                                    \
   prefix template struct MeshAdditiveJob<T>;
 SINEW_MESH_ADDITIVE_INSTANCES(extern, float)
 SINEW_MESH_ADDITIVE_INSTANCES(extern, double)

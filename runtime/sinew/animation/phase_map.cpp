@@ -13,16 +13,29 @@ constexpr int kControls = PhaseMap::kControls;
 constexpr int kMostMarkers = 8;
 constexpr double kSlowest = 0.1;  ///< of the mean rate of time by phase
 
-/// Span and parameter of a phase among the controls.
+/// A phase among the controls of maps of so many cycles: the first control that counts, and their weights.
 struct LagPlace {
-  int first;
-  double u;
-  LagPlace(double phase, int cycles) {
+  int cycles, first;
+  BsplineBasis<double> weights;
+  LagPlace(double phase, int of_cycles) : cycles(of_cycles) {
     const double knots = phase * kControls / cycles, whole = std::floor(knots);
     first = static_cast<int>(whole - std::floor(whole / kControls) * kControls) % kControls;
-    u = knots - whole;
+    weights = BsplineBasis<double>::at(3, knots - whole);
   }
 };
+
+/// Clip time at a phase, with its derivatives by the phase.
+TimeJet<double> time_at(const PhaseMap& map, double phase, const LagPlace& place) {
+  const double knots = double(kControls) / map.cycles, mean = double(map.duration) / map.cycles;
+  TimeJet<double> sum(0.0);
+  for (int t = 0; t < 4; ++t) {
+    const double control = map.lag[std::size_t((place.first + t) % kControls)];
+    sum.value += place.weights.value[t] * control;
+    sum.rate += place.weights.first[t] * control;
+    sum.acceleration += place.weights.second[t] * control;
+  }
+  return {phase * mean + sum.value, mean + knots * sum.rate, knots * knots * sum.acceleration};
+}
 
 Status check_markers(std::span<const PhaseMarker> markers, double duration, int cycles) {
   if (!(duration > 0) || !std::isfinite(duration) || cycles < 1 || cycles > 4)
@@ -46,9 +59,11 @@ Status check_markers(std::span<const PhaseMarker> markers, double duration, int 
 /// What the members ask of the phase at an instant; `times`: theirs, and their derivatives by the phase.
 TimeJet<double> pace(std::span<const PhaseMember> members, double phase, std::span<ClipTime> times) {
   double weight = 0, weight_rate = 0, cycle = 0, by_weight = 0, by_phase = 0;
+  LagPlace place(phase, members[0].map->cycles);
   for (std::size_t i = 0; i < members.size(); ++i) {
     const PhaseMember& m = members[i];
-    const TimeJet<double> time = m.map->by_phase(phase);
+    if (m.map->cycles != place.cycles) place = LagPlace(phase, m.map->cycles);
+    const TimeJet<double> time = time_at(*m.map, phase, place);
     times[i] = time;
     weight += m.weight.value;
     weight_rate += m.weight.rate;
@@ -70,18 +85,7 @@ ClipTime moving_with(const TimeJet<double>& t, const TimeJet<double>& phase) {
 }  // namespace
 
 TimeJet<double> PhaseMap::by_phase(double phase) const {
-  const LagPlace place(phase, cycles);
-  const BsplineBasis<double> w = BsplineBasis<double>::at(3, place.u);
-  const double knots = double(kControls) / cycles;
-  TimeJet<double> sum(0.0);
-  for (int t = 0; t < 4; ++t) {
-    const double control = lag[std::size_t((place.first + t) % kControls)];
-    sum.value += w.value[t] * control;
-    sum.rate += w.first[t] * control;
-    sum.acceleration += w.second[t] * control;
-  }
-  const double mean = double(duration) / cycles;
-  return {phase * mean + sum.value, mean + knots * sum.rate, knots * knots * sum.acceleration};
+  return time_at(*this, phase, LagPlace(phase, cycles));
 }
 
 ClipTime PhaseMap::at(const TimeJet<double>& phase) const {
@@ -103,9 +107,10 @@ Status fit_phase_map(std::span<const PhaseMarker> markers, double duration, int 
   for (int i = kControls; i < size; ++i) {
     const PhaseMarker& m = markers[std::size_t(i - kControls)];
     const LagPlace place(m.phase, cycles);
-    const BsplineBasis<double> w = BsplineBasis<double>::at(3, place.u);
-    for (int t = 0; t < 4; ++t)
-      system(i, (place.first + t) % kControls) = system((place.first + t) % kControls, i) = w.value[t];
+    for (int t = 0; t < 4; ++t) {
+      const int control = (place.first + t) % kControls;
+      system(i, control) = system(control, i) = place.weights.value[t];
+    }
     right[i] = m.time - m.phase * duration / cycles;
   }
   const Vector solution = system.fullPivLu().solve(right);

@@ -18,9 +18,10 @@ struct RootMotion {
 template <class T>
 RootMotion<T> split_root(const JointJet<T>& root) {
   const MovingTransform<T> whole = moving_transform(root);
-  const TimeJet<T> zero{T(0)}, z = whole.rotation.z(), w = whole.rotation.w(), length = sqrt(z * z + w * w);
+  const Quat<TimeJet<T>> q = moving_quaternion(whole.rotation);
+  const TimeJet<T> zero{T(0)};
   MovingTransform<T> travel;
-  travel.rotation = Quat<TimeJet<T>>(w / length, zero, zero, z / length);
+  travel.rotation = moving_rotation(Quat<TimeJet<T>>(q.w(), zero, zero, q.z()));
   travel.translation << whole.translation.x(), whole.translation.y(), zero;
   return {joint_jet(travel), joint_jet<T>(travel.inverse() * whole)};
 }

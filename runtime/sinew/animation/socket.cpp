@@ -5,9 +5,7 @@ namespace {
 
 template <class T>
 MovingTransform<T> at_rest(const Transform<T>& t) {
-  const Quat<T>& q = t.rotation;
-  return {{TimeJet<T>(q.w()), TimeJet<T>(q.x()), TimeJet<T>(q.y()), TimeJet<T>(q.z())},
-          still<T>(t.translation)};
+  return {{t.rotation}, still<T>(t.translation)};
 }
 
 /// How many hold each other below a thing; as many as there are: a circle.
@@ -38,7 +36,7 @@ MovingTransform<T> attached(const MovingTransform<T>& socket, const Transform<T>
 template <class T>
 Release<T> release(const MovingTransform<T>& motion, const Vec3<T>& centre_of_mass) {
   const JointJet<T> jet = joint_jet(motion);
-  const MovingVector<T> centre = motion * still<T>(centre_of_mass);
+  const MovingVector<T> centre = motion * centre_of_mass;
   return {{jet.rotation, value_of<T>(centre)}, rate_of<T>(centre), jet.rotation * jet.omega};
 }
 

@@ -6,7 +6,7 @@
 namespace sinew {
 
 /// value, d/dt, d²/dt². Arithmetic follows the product and chain rules exactly, so a formula written once on
-/// a scalar gives positions, velocities and accelerations alike: Transform<TimeJet<float>> is a moving frame.
+/// a scalar gives positions, velocities and accelerations alike: Vec3<TimeJet<float>> is a moving point.
 /// S is float, double, or a pack of them. Comparisons look at the value. Like a scalar, it begins
 /// uninitialised.
 template <class S>

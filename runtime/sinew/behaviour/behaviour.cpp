@@ -257,11 +257,8 @@ void Behaviour<T>::see_clip(const Character<T>& character, std::span<const Joint
   for (std::size_t side = 0; side < 2; ++side) {
     const MovingTransform<T>& ankle = model_[static_cast<std::size_t>(body_.legs[side].foot)];
     clip_foot_motion_[side] = ankle;
-    const Quat<TimeJet<T>>& q = ankle.rotation;
     clip_ankle_[side].translation = value_of(ankle.translation).template cast<double>();
-    clip_ankle_[side].rotation =
-        Quat<double>(double(q.w().value), double(q.x().value), double(q.y().value), double(q.z().value))
-            .normalized();
+    clip_ankle_[side].rotation = ankle.rotation.value.template cast<double>().normalized();
     clip_foot_[side] = from_above(clip_ankle_[side].translation) - clip_body_;
     middle += from_above(clip_ankle_[side].translation) / 2;
   }

@@ -73,7 +73,7 @@ std::vector<SolePoint<T>> tips_of(const std::vector<SolePoint<T>>& sole, int toe
 /// Turns the foot to where it is wanted, whatever the leg above it does, as far from the clip's as its ankle
 /// can.
 template <class T>
-void set_foot(const StandingBody<T>& body, std::size_t side, const Quat<TimeJet<T>>& foot,
+void set_foot(const StandingBody<T>& body, std::size_t side, const MovingRotation<T>& foot,
               std::span<JointJet<T>> jets) {
   const auto joint = static_cast<std::size_t>(body.legs[side].foot);
   const MovingTransform<T> above = model_motion<T>(jets, body.parents, body.parents[joint]);
@@ -96,7 +96,7 @@ void set_foot(const StandingBody<T>& body, std::size_t side, const Quat<TimeJet<
 /// Brings an ankle to its place by the joints above it, and the foot as it is wanted.
 template <class T>
 void reach_foot(const StandingBody<T>& body, std::size_t side, const MovingVector<T>& ankle,
-                const Quat<TimeJet<T>>& foot, std::span<JointJet<T>> jets) {
+                const MovingRotation<T>& foot, std::span<JointJet<T>> jets) {
   const FootLeg<T>& leg = body.legs[side];
   TwoBoneJob<T> reach{body.parents, jets, leg.upper, leg.middle, leg.foot, ankle};
   reach.pole = model_motion<T>(jets, body.parents, leg.upper).rotation * still<T>(leg.bend);
@@ -138,7 +138,8 @@ template <class T>
 JointJet<T> turned(const JointJet<T>& root, const MovingVector<double>& turn) {
   MovingTransform<T> out = moving_transform<T>(root);
   const MovingVector<T> half = cast<T>(turn) * TimeJet<T>(T(0.5));
-  out.rotation = Quat<TimeJet<T>>(TimeJet<T>(T(1)), half.x(), half.y(), half.z()) * out.rotation;
+  out.rotation =
+      moving_rotation(Quat<TimeJet<T>>(TimeJet<T>(T(1)), half.x(), half.y(), half.z())) * out.rotation;
   return joint_jet<T>(out);
 }
 
@@ -245,9 +246,7 @@ void take_stance(const StandingBody<T>& body, const Stance& stance, std::span<Jo
     jets[0] = stands;
     for (std::size_t side = 0; side < 2; ++side) {
       for (std::size_t n = 0; n < 3; ++n) leg_joint(side, n) = legs[side][n];
-      const Quat<T>& q = stance.foot[side].template cast<T>();
-      reach_foot<T>(body, side, cast<T>(stance.ankle[side]),
-                    {TimeJet<T>(q.w()), TimeJet<T>(q.x()), TimeJet<T>(q.y()), TimeJet<T>(q.z())}, jets);
+      reach_foot<T>(body, side, cast<T>(stance.ankle[side]), {stance.foot[side].template cast<T>()}, jets);
     }
   }
 }

@@ -29,16 +29,16 @@ sinew_status read_layer(const OwnedAsset& owned, const sinew_blend_layer& from, 
 }
 
 /// How joints are turned in model space, of a motion and of what it is compared with.
-using Turns = std::span<Quat<TimeJet<float>>>;
-static_assert(sizeof(Quat<TimeJet<float>>) <= sizeof(sinew_jet) &&
-              alignof(Quat<TimeJet<float>>) <= alignof(sinew_jet));
+using Turns = std::span<MovingRotation<float>>;
+static_assert(sizeof(MovingRotation<float>) <= sizeof(sinew_jet) &&
+              alignof(MovingRotation<float>) <= alignof(sinew_jet));
 
 /// Two for each of `joints`, in the caller's memory.
 sinew_status read_scratch(sinew_jet* from, int count, int joints, Turns& to) noexcept {
   if (!from) return fail(SINEW_INVALID_ARGUMENT, kNull);
   if (!aligned(from)) return fail(SINEW_INVALID_ARGUMENT, kMisaligned);
   if (count < 2 * joints) return fail(SINEW_TOO_SMALL, "scratch has to hold two jets for each joint");
-  to = {reinterpret_cast<Quat<TimeJet<float>>*>(from), 2 * std::size_t(joints)};
+  to = {reinterpret_cast<MovingRotation<float>*>(from), 2 * std::size_t(joints)};
   return SINEW_OK;
 }
 

@@ -324,12 +324,8 @@ GraphScratch<T>::GraphScratch(const Graph& graph) : hash(graph.hash()) {
   for (int n = 0; n < static_cast<int>(graph.definition().nodes.size()); ++n) {
     if (graph.node(n).type != NodeType::kLayers) continue;
     for (int k = 0; k < static_cast<int>(graph.node(n).layers.size()); ++k) {
-      std::vector<JointJet<T>>& reference = references.emplace_back();
-      for (const Transform<float>& x : graph.layer(n, k).reference) {
-        reference.emplace_back();
-        reference.back().rotation = x.rotation.template cast<T>();
-        reference.back().translation = x.translation.template cast<T>();
-      }
+      std::vector<Transform<T>>& reference = references.emplace_back();
+      for (const Transform<float>& x : graph.layer(n, k).reference) reference.push_back(x.template cast<T>());
     }
   }
   rotations.resize(2 * joints);

@@ -72,8 +72,8 @@ struct Rays {
 template <class T>
 void cast_rays(const GraphGround<T>& ground, const MovingTransform<T>& foot, const FootLeg<T>& leg, T floor,
                Rays<T>& rays) {
-  const MovingVector<T> toe = foot * still<T>(leg.toe);
-  const Vec3<T> at = value_of<T>(toe), heel = value_of<T>(MovingVector<T>(foot * still<T>(leg.heel)));
+  const MovingVector<T> toe = foot * leg.toe;
+  const Vec3<T> at = value_of<T>(toe), heel = value_of<T>(foot * leg.heel);
   rays.cast(ground, at, floor, rays.under, rays.under_count);
   rays.cast(ground, heel, floor, rays.under, rays.under_count);
   if (!ground.below) return;
@@ -165,9 +165,10 @@ Status GraphFinish<T>::run_feet() {
   const std::span<const int> parents(graph.parents().data(), jets.size());
   Rays<T> rays[2];
   FootInput<T> inputs[2];
+  LimbMotion<T> limbs[2];
   for (std::size_t k = 0; k < 2; ++k) {
-    const MovingTransform<T> foot = model_motion<T>(jets, parents, legs[k].foot);
-    cast_rays<T>(ground, foot, legs[k], state.level.x.value, rays[k]);
+    limbs[k] = LimbMotion<T>(jets, parents, legs[k].upper, legs[k].middle, legs[k].foot);
+    cast_rays<T>(ground, limbs[k].end, legs[k], state.level.x.value, rays[k]);
     inputs[k] = {feet.locks ? std::min(T(1), graph_contact(graph, scratch, legs[k].foot)) : T(0),
                  {rays[k].under, rays[k].under_count},
                  {rays[k].ahead, rays[k].ahead_count}};
@@ -175,6 +176,7 @@ Status GraphFinish<T>::run_feet() {
   FootPlacementJob<T> job{parents, jets, bound.pelvis, legs, inputs, state.legs, &state.drop, ground.bodies};
   job.level = state.level.x;
   job.step = state.waited;
+  job.limbs = limbs;
   const FootSettings<float>& s = feet.settings;
   job.settings = {T(s.lock_at),   T(s.release_at), T(s.lock_time), T(s.release_time),
                   T(s.half_life), T(s.farthest),   T(s.steepest)};

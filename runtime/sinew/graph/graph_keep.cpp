@@ -51,13 +51,14 @@ void keep(const Part<T>& part, const At& at) {
     }
   }
 }
+/// What a unit of the numbers k of all joints stands for.
+template <class T>
+T unit_of(const Part<T>& part, int k) {
+  return std::is_same_v<Kept<T>, double> ? T(1) : part.greatest[k / 3] * T(1 / kMost);
+}
 template <class T>
 T recalled(const Part<T>& part, int joint, int k) {
-  const Kept<T> number = part.numbers[k * part.count + joint];
-  if constexpr (std::is_same_v<Kept<T>, double>)
-    return number;
-  else
-    return T(number) * (part.greatest[k / 3] * T(1 / kMost));
+  return T(part.numbers[k * part.count + joint]) * unit_of(part, k);
 }
 
 template <class T>
@@ -110,13 +111,21 @@ void recall_offset(std::span<const std::byte> memory, InertialState<T>& offset) 
   for (const int which : {0, 1}) {
     const int count = which == 0 ? offset.joints : offset.translated;
     const Part<T> part = part_of<T>(writable(memory), offset.joints, which, count);
-    for (int k = 0; k < kNumbers; ++k)
-      for (int first = 0; first < count; first += kLanes) {
+    for (int k = 0; k < kNumbers; ++k) {
+      const Kept<T>* from = part.numbers + k * count;
+      const T unit = unit_of(part, k);
+      int first = 0;
+      for (; first + kLanes <= count; first += kLanes) {
         T* at = lane(offset, which, first) + k * kLanes;
-        const int used = std::min(kLanes, count - first);
-        for (int j = 0; j < used; ++j) at[j] = recalled(part, first + j, k);
-        std::fill(at + used, at + kLanes, T(0));  // the joints beside them in a register have none
+#pragma GCC unroll 1  // unrolled, GCC 12 converts half of them one by one
+        for (int j = 0; j < kLanes; ++j) at[j] = T(from[first + j]) * unit;
       }
+      const int left = count - first;
+      if (left == 0) continue;
+      T* at = lane(offset, which, first) + k * kLanes;
+      for (int j = 0; j < left; ++j) at[j] = T(from[first + j]) * unit;
+      std::fill(at + left, at + kLanes, T(0));  // the joints beside them in a register have none
+    }
   }
 }
 

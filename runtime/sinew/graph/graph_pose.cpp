@@ -7,6 +7,7 @@
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/curve_job.h"
 #include "sinew/animation/dying_rate.h"
+#include "sinew/animation/kernels/layout.h"
 #include "sinew/animation/mesh_additive_job.h"
 #include "sinew/animation/quintic_offset.h"
 #include "sinew/animation/root_motion.h"
@@ -44,6 +45,12 @@ TravelVelocity<T> take_uniform(const Clip& clip, const ClipTime& time, JointJet<
   root.acceleration -= (time.acceleration * v).template cast<T>();
   return {{T(time.rate * v.x()), T(time.rate * v.y()), T(0)},
           {T(time.acceleration * v.x()), T(time.acceleration * v.y()), T(0)}};
+}
+
+/// Eigen's vectors are no plain bytes to the compiler: it would copy number by number.
+template <class T>
+void copy_jets(std::span<const JointJet<T>> from, std::span<JointJet<T>> to) {
+  std::copy_n(kernels::layout(from.data()), to.size(), kernels::layout(to.data()));
 }
 
 /// Is the heading of this root defined, that is: is it not upside down?
@@ -129,7 +136,7 @@ class Pose {
     return {};
   }
   void copy(int from, int to, std::size_t joints) {
-    std::copy_n(at(from).jets.begin(), joints, at(to).jets.begin());
+    copy_jets<T>(at(from).jets, jets(to, joints));
     std::copy(at(from).curves.begin(), at(from).curves.end(), at(to).curves.begin());
     at(to).travel = at(from).travel;
   }
@@ -154,7 +161,7 @@ class Pose {
   Status physical(const GraphTask& task, std::size_t joints) {
     Register& out = at(task.out);
     s_.shows_physical = true;
-    std::copy_n(job_.physical.begin(), joints, out.jets.begin());
+    copy_jets<T>(job_.physical, jets(task.out, joints));
     Vec3<T> place;
     T heading;
     if (has_heading(out.jets[0])) {
@@ -251,26 +258,21 @@ class Pose {
           !status)
         return status;
     }
-    const std::vector<JointJet<T>>& reference =
+    const std::span<const Transform<T>> reference =
         s_.references[std::size_t(graph_.slot(task.index)) + std::size_t(task.layer)];
     if (in.mode == LayerMode::kMeshAdditive) return add_in_model(below, upper, reference, w, mask);
-    if (in.mode == LayerMode::kAdditive) {
-      for (std::size_t j = 0; j < joints; ++j) {
-        upper[j].rotation = reference[j].rotation.conjugate() * upper[j].rotation;
-        upper[j].translation -= reference[j].translation;
-      }
-    }
     const BlendMode mode = in.mode == LayerMode::kAdditive ? BlendMode::kAdditive : BlendMode::kOverride;
-    const BlendLayer<T> layers[] = {{below}, {upper, w, mask, mode}};
+    const BlendLayer<T> layers[] = {{below}, {upper, w, mask, mode, reference}};
     return BlendingJob<T>{layers, s_.rest, below}.Run();
   }
   Status add_in_model(std::span<JointJet<T>> below, std::span<JointJet<T>> upper,
-                      const std::vector<JointJet<T>>& reference, const TimeJet<T>& w,
-                      std::span<const T> mask) {
+                      std::span<const Transform<T>> reference, const TimeJet<T>& w, std::span<const T> mask) {
     const std::size_t n = below.size();
     const std::span<const int> parents(graph_.parents().data(), n);
-    const std::span<Quat<TimeJet<T>>> scratch(s_.rotations.data(), 2 * n);
-    subtract_in_model<T>(parents, {reference.data(), n}, upper, scratch, upper);
+    const std::span<MovingRotation<T>> scratch(s_.rotations.data(), 2 * n);
+    const std::span<JointJet<T>> still(s_.left.data(), n);
+    for (std::size_t j = 0; j < n; ++j) still[j] = {.rotation = reference[j].rotation};
+    subtract_in_model<T>(parents, still, upper, scratch, upper);
     return MeshAdditiveJob<T>{parents, below, upper, w, mask.empty() ? mask : mask.first(n), scratch}.Run();
   }
 
@@ -419,7 +421,7 @@ JointJet<T> Pose<T>::travel_jet(const TravelVelocity<T>& now) {
 template <class T>
 void Pose<T>::travel() {
   const Register& pose = at(0);
-  std::copy_n(pose.jets.begin(), job_.jets.size(), job_.jets.begin());
+  copy_jets<T>(pose.jets, job_.jets);
   std::copy_n(pose.curves.begin(), std::min(job_.curves.size(), pose.curves.size()), job_.curves.begin());
   GraphHeader<T>& header = block_.header();
   const TravelVelocity<T> before = header.travel, &now = pose.travel;

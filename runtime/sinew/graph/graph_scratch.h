@@ -64,17 +64,17 @@ struct GraphScratch {
     int group;               ///< of GraphDefinition::groups
     TimeJet<double> weight;  ///< ≥ 0, in the whole pose
   };
-  std::uint64_t hash;                                ///< of the graph that it was made for
-  std::vector<JointJet<T>> jets;                     ///< [register][joint]
-  std::vector<TimeJet<T>> curves;                    ///< [register][slot]
-  std::vector<Register> registers;                   ///< on these two; the first has the pose at the end
-  std::vector<std::vector<T>> masks;                 ///< [mask][joint]
-  std::vector<std::vector<JointJet<T>>> references;  ///< [layer][joint], of the additive ones
-  std::vector<Transform<T>> rest;                    ///< [joint] joint → parent
-  std::vector<Quat<TimeJet<T>>> rotations;           ///< two per joint
-  std::vector<T> offset;                             ///< of the transition that is carried out
-  std::vector<JointJet<T>> left;                     ///< [joint] the pose left behind by it
-  std::vector<T> spare;                              ///< [joint] rad/s²
+  std::uint64_t hash;                                 ///< of the graph that it was made for
+  std::vector<JointJet<T>> jets;                      ///< [register][joint]
+  std::vector<TimeJet<T>> curves;                     ///< [register][slot]
+  std::vector<Register> registers;                    ///< on these two; the first has the pose at the end
+  std::vector<std::vector<T>> masks;                  ///< [mask][joint]
+  std::vector<std::vector<Transform<T>>> references;  ///< [layer][joint], of the additive ones
+  std::vector<Transform<T>> rest;                     ///< [joint] joint → parent
+  std::vector<MovingRotation<T>> rotations;           ///< two per joint
+  std::vector<T> offset;                              ///< of the transition that is carried out
+  std::vector<JointJet<T>> left;                      ///< [joint] the pose left behind by it, or a reference
+  std::vector<T> spare;                               ///< [joint] rad/s²
 
   // Of one update:
   std::vector<GraphTask> tasks;     ///< in the order in which they are carried out

@@ -123,7 +123,10 @@ class FrameWriter {
       vector(*v);
   }
   void body(const MovingTransform<T>& body) {
-    for (int k = 0; k < 4; ++k) moving(body.rotation.coeffs()[k]);
+    const MovingRotation<T>& turned = body.rotation;
+    for (int k = 0; k < 4; ++k) put(turned.value.coeffs()[k]);
+    vector(turned.omega);
+    vector(turned.alpha);
     for (int k = 0; k < 3; ++k) moving(body.translation[k]);
   }
   void ray(const Vec3<T>& from, const GroundHit<T>& hit, bool met) {
@@ -201,7 +204,9 @@ class FrameReader {
   }
   MovingTransform<T> body() {
     MovingTransform<T> out;
-    for (int k = 0; k < 4; ++k) out.rotation.coeffs()[k] = moving();
+    for (int k = 0; k < 4; ++k) out.rotation.value.coeffs()[k] = get<T>();
+    out.rotation.omega = vector();
+    out.rotation.alpha = vector();
     for (int k = 0; k < 3; ++k) out.translation[k] = moving();
     return out;
   }

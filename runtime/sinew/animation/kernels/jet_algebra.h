@@ -31,7 +31,8 @@ template <class S>
 
 /// A rotation's quaternion with its derivatives: q' = ½ q ω, q'' = ½ q (α − ½|ω|²).
 template <class S>
-void quaternion_jet(const S* q, const S* omega, const S* alpha, TimeJet<S> (&out)[4]) {
+[[gnu::always_inline]] inline void quaternion_jet(const S* q, const S* omega, const S* alpha,
+                                                  TimeJet<S> (&out)[4]) {
   const S quarter_square = 0.25f * ((omega[0] * omega[0] + omega[1] * omega[1]) + omega[2] * omega[2]);
   S w[3], a[3];
   for (int i = 0; i < 3; ++i) {
@@ -49,7 +50,7 @@ void quaternion_jet(const S* q, const S* omega, const S* alpha, TimeJet<S> (&out
 
 /// Quaternion product.
 template <class S>
-void multiply(const S (&a)[4], const S (&b)[4], S (&out)[4]) {
+[[gnu::always_inline]] inline void multiply(const S (&a)[4], const S (&b)[4], S (&out)[4]) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     out[i] = (a[3] * b[i] + a[i] * b[3]) + (a[j] * b[k] - a[k] * b[j]);

@@ -37,6 +37,7 @@ struct BlendLayerData {
   const T* mask = nullptr;  ///< [joint], or null for 1
   T weight[3] = {1, 0, 0};  ///< value, 1/s, 1/s²
   Mode mode = kMix;
+  const PoseLayout<T>* reference = nullptr;  ///< what an additive one differs from; null: it is a difference
 };
 template <class T>
 struct BlendData {

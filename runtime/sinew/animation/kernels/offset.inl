@@ -8,25 +8,6 @@
 namespace sinew::kernels {
 namespace {
 
-template <class P>
-OffsetRotation<P> rotation_part(const PackedJets<P>& jets) {
-  OffsetRotation<P> r;
-  for (int i = 0; i < 4; ++i) r.q[i] = jets.number[kRotation + i];
-  for (int i = 0; i < 3; ++i) {
-    r.omega[i] = jets.number[kOmega + i];
-    r.alpha[i] = jets.number[kAlpha + i];
-  }
-  return r;
-}
-template <class P>
-void set_rotation_part(const OffsetRotation<P>& r, PackedJets<P>& jets) {
-  for (int i = 0; i < 4; ++i) jets.number[kRotation + i] = r.q[i];
-  for (int i = 0; i < 3; ++i) {
-    jets.number[kOmega + i] = r.omega[i];
-    jets.number[kAlpha + i] = r.alpha[i];
-  }
-}
-
 /// Where the offsets of a joint stand: [block][number][kOffsetBlock].
 template <class T>
 T* offsets_of(T* offsets, int joint) {
@@ -35,15 +16,14 @@ T* offsets_of(T* offsets, int joint) {
 template <class P>
 [[gnu::always_inline]] inline void load_offsets(const typename P::Scalar* offsets, const Block<P>& block,
                                                 P (&out)[kOffsetPart]) {
-  const int first = block.joint[0];
   if (block.whole) {
-    const auto* from = offsets_of(offsets, first);
+    const auto* from = offsets_of(offsets, block.first);
     for (int i = 0; i < kOffsetPart; ++i) out[i] = P::load(from + i * kOffsetBlock);
   } else {
     for (int i = 0; i < kOffsetPart; ++i) {
       typename P::Scalar gathered[P::kLanes];
       for (int lane = 0; lane < P::kLanes; ++lane)
-        gathered[lane] = offsets_of(offsets, block.joint[lane])[i * kOffsetBlock];
+        gathered[lane] = offsets_of(offsets, block.joint(lane))[i * kOffsetBlock];
       out[i] = P::load(gathered);
     }
   }
@@ -54,7 +34,7 @@ template <class P>
 P before(int end, const Block<P>& block) {
   using T = typename P::Scalar;
   T flags[P::kLanes];
-  for (int lane = 0; lane < P::kLanes; ++lane) flags[lane] = block.joint[lane] < end ? T(1) : T(0);
+  for (int lane = 0; lane < P::kLanes; ++lane) flags[lane] = block.joint(lane) < end ? T(1) : T(0);
   return P::load(flags);
 }
 
@@ -82,6 +62,24 @@ void take_offsets(const JetLayout<T>* from, const JetLayout<T>* to, int joints, 
   }
 }
 
+/// Adds what is left of the offsets of a block's translations.
+template <class P>
+void add_shifts(const OffsetFade<typename P::Scalar>& data, const QuinticOffset<P>& fade,
+                const Block<P>& block, PackedJets<P>& jets) {
+  P start[kOffsetPart], value[3], rate[3], acceleration[3];
+  load_offsets(data.offsets.translations, block, start);
+  faded(fade, start, value, rate, acceleration);
+  const P moved = before(data.offsets.translated, block);
+  const auto add = [&](P& number, const P& offset) {
+    number = where_equal(moved, 1, number + offset, number);
+  };
+  for (int i = 0; i < 3; ++i) {
+    add(jets.number[kTranslation + i], value[i]);
+    add(jets.number[kVelocity + i], rate[i]);
+    add(jets.number[kAcceleration + i], acceleration[i]);
+  }
+}
+
 template <class T>
 void add_all(const JetLayout<T>* to, const OffsetFade<T>& data, int joints, JetLayout<T>* out) {
   using P = typename LanesOf<T>::Type;
@@ -89,26 +87,19 @@ void add_all(const JetLayout<T>* to, const OffsetFade<T>& data, int joints, JetL
   QuinticOffset<P> fade = QuinticOffset<P>::at(elapsed, P::all(data.duration));
   for (int first = 0; first < joints; first += P::kLanes) {
     const Block<P> block(first, joints);
-    PackedJets<P> jets = block.load(to);
+    const bool shifts = first < data.offsets.translated;
     if (data.profile) fade = QuinticOffset<P>::at(elapsed, data.duration * block.load(data.profile));
+    PackedJets<P> jets = shifts ? block.load(to) : block.load_turns(to);
     P start[kOffsetPart], value[3], rate[3], acceleration[3];
     load_offsets(data.offsets.rotations, block, start);
     faded(fade, start, value, rate, acceleration);
     set_rotation_part(composition(rotation_part(jets), rotation_of(value, rate, acceleration)), jets);
-    if (first < data.offsets.translated) {
-      load_offsets(data.offsets.translations, block, start);
-      faded(fade, start, value, rate, acceleration);
-      const P moved = before(data.offsets.translated, block);
-      const auto add = [&](P& number, const P& offset) {
-        number = where_equal(moved, T(1), number + offset, number);
-      };
-      for (int i = 0; i < 3; ++i) {
-        add(jets.number[kTranslation + i], value[i]);
-        add(jets.number[kVelocity + i], rate[i]);
-        add(jets.number[kAcceleration + i], acceleration[i]);
-      }
+    if (shifts) {
+      add_shifts(data, fade, block, jets);
+      block.store(jets, out);
+    } else {
+      block.store_turns(jets, to, out);
     }
-    block.store(jets, out);
   }
 }
 

@@ -231,6 +231,16 @@ P interleave_high(const P& a, const P& b) {
   return shuffle(a, b, Interleaved<2>());
 }
 
+/// Every four lanes in another order.
+template <int X, int Y, int Z, int W, class P>
+P rearranged(const P& a) {
+  constexpr int kFrom[] = {X, Y, Z, W};
+  return [&]<int... I>(std::integer_sequence<int, I...>) {
+    return P(__builtin_shufflevector(a.v, a.v, (I / 4 * 4 + kFrom[I % 4])...));
+  }
+  (std::make_integer_sequence<int, P::kLanes>());
+}
+
 /// Transposes every 4×4 block of the 4×N matrix `m`: lane 4g + k of row c swaps with lane 4g + c of row k.
 /// Its own inverse. Eight shuffles.
 template <class P>
