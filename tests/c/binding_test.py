@@ -231,6 +231,8 @@ class Classes(unittest.TestCase):
         lines = []
         scene.world.draw(line=lambda a, b, colour: lines.append((a, b, colour)))
         self.assertGreater(len(lines), 10)
+        self.assertLess(scene.character.physics.tilt, 0.5)
+        self.assertAlmostEqual(scene.character.physics.height, 1, delta=0.2)
         state = scene.world.save()
         scene.world.record()
         for frame in range(5):

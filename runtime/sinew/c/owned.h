@@ -102,6 +102,12 @@ struct OwnedWorld {
   std::vector<ContactEvent> waiting;
   std::optional<ContactRing> ring;
   std::unique_ptr<Recorder<float>> recorder;
+
+  /// After a step: graphs hear of their characters' bodies.
+  void feel() {
+    for (std::size_t k = 0; k < graphs.size(); ++k)
+      if (graphs[k]) graphs[k]->feel(world.character(static_cast<int>(k)));
+  }
 };
 
 }  // namespace sinew::c

@@ -105,6 +105,7 @@ sinew_status sinew_world_replay(sinew_world world, const void* bytes, size_t siz
     if (w.recorder) return fail(SINEW_INVALID_ARGUMENT, "the world is being recorded itself");
     ReplayReport report;
     if (const Status status = replay(w.world, bytes_of(bytes, size), report); !status) return answer(status);
+    w.feel();  // of the last step: what the others told is recorded
     return fill_sized(out, [&](sinew_replay_report& r) {
       r.steps = report.steps;
       r.same = report.same;

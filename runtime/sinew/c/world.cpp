@@ -162,8 +162,7 @@ sinew_status sinew_world_step(sinew_world world, float h) {
     const Status stepped = w.crowd      ? w.crowd->step(h, w.jobs)
                            : w.recorder ? w.recorder->step(h)
                                         : w.world.step(h, w.jobs);
-    for (std::size_t k = 0; stepped.ok() && k < w.graphs.size(); ++k)
-      if (w.graphs[k]) w.graphs[k]->feel(w.world.character(static_cast<int>(k)));
+    if (stepped.ok()) w.feel();
     return answer(stepped);
   });
 }

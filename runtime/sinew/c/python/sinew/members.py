@@ -298,6 +298,11 @@ class Character(_Affected):
     def report(self):
         return report_of(_abi.CharacterReport, lib.sinew_character_get_report, self.handle)
 
+    @property
+    def physics(self):
+        """How it stands and what its muscles bear: tilt, face_up, height, load, off_animation, contacts, contact_force."""
+        return report_of(_abi.Physics, lib.sinew_character_get_physics, self.handle)
+
     def _view(self, kind, ctype):
         view = _abi.View()
         self._call(lib.sinew_character_get_view, kind, byref(view))
