@@ -27,6 +27,7 @@ constexpr double kUpright = 0.77;                        ///< cos 40°: who tilt
 constexpr double kOffPlan = 0.1, kOffPlanSpeed = 1;      ///< m, m/s: a plan that fails is made again
 constexpr double kDrop = 3, kRise = 12;        ///< m/s², of the body: feet that bear nothing can't press
 constexpr double kLands = 0.2, kGivesIn = 25;  ///< s, m/s²: likewise of legs that take up a fall
+constexpr double kUp = 0.03;                   ///< m below its height, at which they have
 constexpr double kMisplaced = 0.03, kMisturned = 0.2;  ///< m, rad: a foot that is put back
 constexpr double kShifted = 0.15;                      ///< m/s, from which the other foot bears all
 constexpr double kWalks = 0.25;                        ///< m/s, of an animation that does not stand
@@ -322,6 +323,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   }
   if (flies()) return fly(is, jets, h);
   if (in_flight_) land(is, jets);
+  if (std::exchange(settles_, false)) end_step(is, jets);  // its feet stand where they came down
   if (lands_) give_in(is, jets[0]);
   if (walks_ && clip_velocity_.norm() < kStops * pace_) stop_walking(is, jets);
   if (walks_) return walk_on(character, world, h);
@@ -416,7 +418,7 @@ void Behaviour<T>::choose_support(const MeasuredBody& is) {
 template <class T>
 void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
   report_.state = BehaviourState::kBalance;
-  in_flight_ = lands_ = false;
+  in_flight_ = lands_ = settles_ = false;
   sets_off_ = 0;
   swing_ = home_ = -1;
   plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
@@ -585,8 +587,7 @@ void Behaviour<T>::move_height(const std::array<Vec3<double>, 2>& ankle, const V
   if (lands_) height_.acceleration += yields_;
   height_.value += h * height_.rate + h * h / 2 * height_.acceleration;
   height_.rate += h * height_.acceleration;
-  lands_ &=
-      std::abs(lower - height_.value) > kSame * unit_ || std::abs(height_.rate) > kStill * std::sqrt(unit_);
+  settles_ = lands_ && lower - height_.value < kUp * unit_ && height_.rate > -kStill * std::sqrt(unit_);
 }
 
 template <class T>
@@ -666,7 +667,7 @@ void Behaviour<T>::return_to_clip(Character<T>& character) {
 /// The animation again, where it is.
 template <class T>
 void Behaviour<T>::give_up(Character<T>& character) {
-  walks_ = false;
+  walks_ = in_flight_ = lands_ = settles_ = false;
   higher_ = 0;
   (void)character.set_help(-1, -1);
   report_.state = BehaviourState::kClip;

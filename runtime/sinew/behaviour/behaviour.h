@@ -284,6 +284,7 @@ class Behaviour {
   bool in_flight_ = false;  ///< its plan is that of a body in the air
   double yields_ = 0;       ///< m/s², of its height: as far as its legs give in further than they should
   bool lands_ = false;      ///< its legs take up what it fell
+  bool settles_ = false;    ///< they have
   Vec3<double> forward_ = Vec3<double>::UnitX();  ///< of the body, root axes
   Quat<double> root_before_ = Quat<double>::Identity();
   bool measured_ = false;  ///< `root_before_` is that of the last frame

@@ -135,6 +135,7 @@ void Behaviour<T>::visit(ByteStream& stream) {
   stream.value("yields", yields_);
   stream.flag("is in the air", in_flight_);
   stream.flag("lands", lands_);
+  stream.flag("has landed", settles_);
   stream.rotation("root a step before", root_before_);
   stream.value("level of the ground", level_);
   stream.flag("something has borne it", leveled_);
