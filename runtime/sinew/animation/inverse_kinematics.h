@@ -15,7 +15,9 @@ namespace sinew {
 /// The three joints of a limb in model space.
 template <class T>
 struct LimbMotion {
-  MovingTransform<T> upper, middle, end;  ///< joint → model
+  MovingTransform<T> upper;   ///< joint → model, as the others: that next to the body
+  MovingTransform<T> middle;  ///< that in between
+  MovingTransform<T> end;     ///< that which comes to a target
 
   LimbMotion() = default;
   /// Of joints one below the other.
