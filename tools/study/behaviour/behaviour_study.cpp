@@ -157,7 +157,6 @@ std::string scene_table(const BehaviourScene& scene) {
 BehaviourPlan BehaviourPlan::quick() {
   BehaviourPlan plan;
   plan.sweeps = {{Role::kChest, 60, 4, {10, 20, 30, 40, 50, 60, 80, 100, 120}, 3}};
-  plan.phases = 2;
   plan.hits = HitPlan::quick();
   plan.get_ups = GetUpPlan::quick();
   return plan;

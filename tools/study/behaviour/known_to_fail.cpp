@@ -25,10 +25,6 @@ const char* behaviour_known_to_fail(const std::string& scene) {
       {"push_stand_pelvis_60_Hz", kStand},
       {"push_stand_chest_30_Hz", kStand},
       {"push_stand_chest_120_Hz", kStand},
-      {"push_while_walking",
-       "steps of the walk catch it, but sideways not in every phase of the stride; who was caught walks on "
-       "beside "
-       "its clip, where it stands"},
       {"rates",
        "what a step catches depends on the rate: where it falls differs by a fifth, backward by half"},
   };
