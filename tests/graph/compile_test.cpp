@@ -216,8 +216,9 @@ TEST(GraphCompile, ImpossibleIsWhatIsFalseForAllValues) {
       Graph graph;
       fixtures::bind_graph(with_condition("(" + condition + ") || remaining > 1000 && jump"), asset, graph);
       for (int k = 0; k < 18 && !ever; ++k) {
+        const int step = k / 2 - 1;
         fixtures::GraphPlayer<float> player(graph);
-        player.set("speed", (k / 2 - 1) * 0.5);  // the thresholds, between them, and beyond
+        player.set("speed", step * 0.5);  // the thresholds, between them, and beyond
         player.set("free", k % 2);
         player.update(0);
         ever = player.in("graph") == "b";
