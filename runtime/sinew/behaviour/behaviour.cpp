@@ -205,7 +205,7 @@ void Behaviour<T>::act(Character<T>& character, std::span<JointJet<T>> jets, T h
     std::copy(last_.begin(), last_.end(), jets.begin());
     return;
   }
-  if (in_flight_)
+  if (landing_ == Landing::kInAir)
     write_flight(jets);
   else if (walks_)
     write_walk(jets, double(h));
@@ -229,7 +229,7 @@ void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
     root.translation += h * root.velocity + h * h / 2 * root.acceleration;
     root.velocity += h * root.acceleration;
     if (!fades_root_) root = jets[0];
-    if (lands_)  // legs give in at once
+    if (landing_ == Landing::kLands)  // legs give in at once
       for (const FootLeg<T>& leg : body_.legs)
         for (const int joint : {leg.upper, leg.middle, leg.foot})
           last_[static_cast<std::size_t>(joint)] = jets[static_cast<std::size_t>(joint)];
@@ -285,7 +285,6 @@ bool Behaviour<T>::is_pushed(const MeasuredBody& is, double h) {
     place = from_above(asked.place);
     velocity = from_above(asked.velocity);
   }
-  if (flies()) return true;
   const Vec2 off = from_above(is.mass.place) - place, faster = from_above(is.mass.velocity) - velocity;
   return off.norm() > kNoticed * unit_ || faster.norm() > kNoticedSpeed * std::sqrt(unit_);
 }
@@ -302,14 +301,14 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   if (report_.state == BehaviourState::kClip) {
     // Who is back in a walk, or sets off, is led: no ground gives all that the way there asks for.
     if (fade_.running() && fades_root_ && clip_walks()) (void)character.come_back();
-    if (!last_step_.root_unknown || !is_pushed(is, h)) return;
+    if (!last_step_.root_unknown || !(flies() || is_pushed(is, h))) return;
     report_ = {.state = BehaviourState::kPassive};
     strength_ = double(character.strength());
     return;
   }
   const Quat<double> tilt = is.root.rotation * jets[0].rotation.template cast<double>().conjugate();
   const double high = is.root.translation.z() - level_;
-  if ((high < (lands_ ? kSquats : kFallen) * body_.height && !flies()) ||
+  if ((high < (landing_ == Landing::kLands ? kSquats : kFallen) * body_.height && !flies()) ||
       (tilt * Vec3<double>::UnitZ()).z() < kUpright)
     return fall(character, BehaviourReason::kTilted, high);
   if (report_.state == BehaviourState::kPassive) {
@@ -317,14 +316,13 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     if (report_.time < settings_.reaction) return;
     if (report_.time - h < settings_.reaction)  // the first time
       (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
-    if (flies()) return fly(is, jets, h);
     if (clip_walks()) return begin_walk(character, world, jets, h);
-    begin_plan(is, jets);
+    if (!flies()) begin_plan(is, jets);
   }
   if (flies()) return fly(is, jets, h);
-  if (in_flight_) land(is, jets);
-  if (std::exchange(settles_, false)) end_step(is, jets);  // its feet stand where they came down
-  if (lands_) give_in(is, jets[0]);
+  if (landing_ == Landing::kInAir) land(is, jets);
+  if (landing_ == Landing::kLanded) end_step(is, jets);  // its feet stand where they came down
+  if (landing_ == Landing::kLands) give_in(is, jets[0]);
   if (walks_ && clip_velocity_.norm() < kStops * pace_) stop_walking(is, jets);
   if (walks_) return walk_on(character, world, h);
   if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time) end_step(is, jets);
@@ -344,7 +342,8 @@ void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is)
   const Vec2 capture = plan_.capture_point(frequency_);
   const double speed = plan_.velocity.norm() / std::sqrt(unit_);
   report_.capture_depth = support_.depth(capture);
-  if (lands_ && height_.rate < -kStill * std::sqrt(unit_)) return;  // both legs are needed
+  if (landing_ == Landing::kLands && height_.rate < -kStill * std::sqrt(unit_))
+    return;  // both legs are needed
   if (report_.capture_depth < 0) {
     home_ = -1;
     const int left = settings_.most_steps - report_.steps;
@@ -418,7 +417,7 @@ void Behaviour<T>::choose_support(const MeasuredBody& is) {
 template <class T>
 void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
   report_.state = BehaviourState::kBalance;
-  in_flight_ = lands_ = settles_ = false;
+  landing_ = Landing::kNone;
   sets_off_ = 0;
   swing_ = home_ = -1;
   plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
@@ -534,13 +533,20 @@ void Behaviour<T>::move_swing(double h) {
   foot_[side].translation.y() = to.y();
 }
 
+/// Of the body and its trunk, without height and feet.
 template <class T>
-void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
+Stance Behaviour<T>::planned() const {
   Stance stance;
   stance.body = plan_.place;
   stance.body_velocity = plan_.velocity;
   stance.body_acceleration = plan_.acceleration;
   for (int a = 0; a < 3; ++a) stance.turn[a] = {turn_[a], turn_rate_[a], turn_acceleration_[a]};
+  return stance;
+}
+
+template <class T>
+void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
+  Stance stance = planned();
   for (std::size_t side = 0; side < 2; ++side) {
     stance.ankle[side] = still<double>(foot_[side].translation);
     stance.foot[side] = foot_[side].rotation;
@@ -581,20 +587,22 @@ void Behaviour<T>::move_height(const std::array<Vec3<double>, 2>& ankle, const V
     const double up = std::sqrt(std::max(length * length - across.squaredNorm(), 0.04 * length * length));
     lower = std::min(lower, ankle[side].z() + up - hip.z());
   }
-  const double time = (lands_ ? kLands : kHeight) * std::sqrt(unit_);
+  const bool lands = landing_ == Landing::kLands;
+  const double time = (lands ? kLands : kHeight) * std::sqrt(unit_);
   height_.acceleration = std::clamp((lower - height_.value) / (time * time) - 2 / time * height_.rate, -kDrop,
-                                    lands_ ? kGivesIn : kRise);
-  if (lands_) height_.acceleration += yields_;
+                                    lands ? kGivesIn : kRise);
+  if (lands) height_.acceleration += yields_;
   height_.value += h * height_.rate + h * h / 2 * height_.acceleration;
   height_.rate += h * height_.acceleration;
-  settles_ = lands_ && lower - height_.value < kUp * unit_ && height_.rate > -kStill * std::sqrt(unit_);
+  if (lands && lower - height_.value < kUp * unit_ && height_.rate > -kStill * std::sqrt(unit_))
+    landing_ = Landing::kLanded;
 }
 
 template <class T>
 bool Behaviour<T>::may_finish(const MeasuredBody& is) const {
   // Who has just got up need not stand as well as it would like to.
   const double patience = risen_ ? 1 + std::max(report_.time - kPatient, 0.0) / kPatient : 1;
-  return swing_ < 0 && !lands_ && !fade_.running() &&
+  return swing_ < 0 && landing_ == Landing::kNone && !fade_.running() &&
          from_above(is.mass.velocity).norm() < patience * kStill / 2 * std::sqrt(unit_) &&
          (from_above(is.mass.place) - goal()).norm() < patience * kSame / 2 * unit_ &&
          (turn_ - Vec3<double>(0, 0, to_feet().yaw)).norm() < patience * 0.02;
@@ -667,7 +675,8 @@ void Behaviour<T>::return_to_clip(Character<T>& character) {
 /// The animation again, where it is.
 template <class T>
 void Behaviour<T>::give_up(Character<T>& character) {
-  walks_ = in_flight_ = lands_ = settles_ = false;
+  walks_ = false;
+  landing_ = Landing::kNone;
   higher_ = 0;
   (void)character.set_help(-1, -1);
   report_.state = BehaviourState::kClip;

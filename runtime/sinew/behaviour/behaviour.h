@@ -107,6 +107,14 @@ struct MeasuredBody {
   }
 };
 
+/// How far a body is with coming down that nothing has borne for a while.
+enum class Landing : std::uint8_t {
+  kNone,    ///< it stands, or walks
+  kInAir,   ///< its plan is that of a body in the air
+  kLands,   ///< its legs take up what it fell
+  kLanded,  ///< they have: it has to plan anew where its feet stand
+};
+
 /// What a behaviour asks of its character after a step.
 struct LastStep {
   Vec3<double> momentum = Vec3<double>::Zero();  ///< kg·m/s
@@ -198,6 +206,7 @@ class Behaviour {
   bool flies() const;
   void fly(const MeasuredBody& is, std::span<const JointJet<T>> jets, double h);
   void write_flight(std::span<JointJet<T>> jets);
+  Stance planned() const;
   void land(const MeasuredBody& is, std::span<const JointJet<T>> jets);
   void give_in(const MeasuredBody& is, const JointJet<T>& root);
   void move_plan(double h);
@@ -279,12 +288,10 @@ class Behaviour {
   Vec3<double> turn_ = Vec3<double>::Zero(), turn_rate_ = Vec3<double>::Zero(),
                turn_acceleration_ = Vec3<double>::Zero(), spin_ = Vec3<double>::Zero();
   TimeJet<double> height_{0.0};
-  double rises_ = 0;        ///< m/s, upwards, after the last step
-  double airborne_ = 0;     ///< s, in which nothing has borne it
-  bool in_flight_ = false;  ///< its plan is that of a body in the air
-  double yields_ = 0;       ///< m/s², of its height: as far as its legs give in further than they should
-  bool lands_ = false;      ///< its legs take up what it fell
-  bool settles_ = false;    ///< they have
+  double rises_ = 0;     ///< m/s, upwards, after the last step
+  double airborne_ = 0;  ///< s, in which nothing has borne it
+  double yields_ = 0;  ///< m/s², of its height in this frame: as far as legs give in further than they should
+  Landing landing_ = Landing::kNone;
   Vec3<double> forward_ = Vec3<double>::UnitX();  ///< of the body, root axes
   Quat<double> root_before_ = Quat<double>::Identity();
   bool measured_ = false;  ///< `root_before_` is that of the last frame

@@ -23,7 +23,7 @@ void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double 
   if (!waits_ && !rose) stood_on_ = character.animation_ground().value_or(ground_);
   report_.state = BehaviourState::kFall;
   risen_ = walks_ = waits_ = false;
-  in_flight_ = lands_ = settles_ = false;
+  landing_ = Landing::kNone;
   sets_off_ = 0;
   report_.fell_beyond = reason == BehaviourReason::kBeyondReach ? number : 0;
   report_.time = 0;
@@ -161,7 +161,7 @@ void Behaviour<T>::stand(Character<T> character) {
   (void)character.set_help(-1, -1);
   report_ = {};
   allowed_ = waits_ = false;
-  in_flight_ = lands_ = settles_ = false;
+  landing_ = Landing::kNone;
   sets_off_ = 0;
 }
 

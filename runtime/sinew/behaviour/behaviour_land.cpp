@@ -36,10 +36,10 @@ bool Behaviour<T>::flies() const {
 /// Nothing that it does moves its centre of mass.
 template <class T>
 void Behaviour<T>::fly(const MeasuredBody& is, std::span<const JointJet<T>> jets, double h) {
-  if (!in_flight_) {
+  if (landing_ != Landing::kInAir) {
     begin_plan(is, jets);
     walks_ = false;
-    in_flight_ = true;
+    landing_ = Landing::kInAir;
   }
   plan_ = {from_above(is.mass.place) + h * from_above(is.mass.velocity), from_above(is.mass.velocity)};
   const double g = settings_.gravity, falls = is.mass.velocity.z();
@@ -51,11 +51,8 @@ void Behaviour<T>::fly(const MeasuredBody& is, std::span<const JointJet<T>> jets
 /// Feet as its animation has them, below where its capture point will be when they bear it.
 template <class T>
 void Behaviour<T>::write_flight(std::span<JointJet<T>> jets) {
-  Stance stance;
-  stance.body = plan_.place;
-  stance.body_velocity = plan_.velocity;
+  Stance stance = planned();
   stance.height = height_;
-  for (int a = 0; a < 3; ++a) stance.turn[a] = {turn_[a], turn_rate_[a], turn_acceleration_[a]};
   Vec2 ahead = plan_.velocity / frequency_;
   if (const double far = ahead.norm(); far > kAhead * unit_) ahead *= kAhead * unit_ / far;
   for (std::size_t side = 0; side < 2; ++side) {
@@ -72,7 +69,7 @@ template <class T>
 void Behaviour<T>::land(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
   begin_plan(is, jets);
   height_.rate = is.mass.velocity.z();
-  lands_ = true;
+  landing_ = Landing::kLands;
 }
 
 /// Legs that can't do what the plan asks for give in further: it goes on from there.

@@ -132,10 +132,7 @@ void Behaviour<T>::visit(ByteStream& stream) {
   visit_jet("height", height_, stream);
   stream.value("speed upwards", rises_);
   stream.value("time in the air", airborne_);
-  stream.value("yields", yields_);
-  stream.flag("is in the air", in_flight_);
-  stream.flag("lands", lands_);
-  stream.flag("has landed", settles_);
+  stream.enumeration("how far it is with landing", landing_, Landing::kLanded);
   stream.rotation("root a step before", root_before_);
   stream.value("level of the ground", level_);
   stream.flag("something has borne it", leveled_);

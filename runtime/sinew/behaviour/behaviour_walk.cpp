@@ -140,13 +140,13 @@ void Behaviour<T>::move_offset(double h) {
              rate = from_above(Vec3<double>((rate_of(swing) - rate_of(stance)).template cast<double>()));
   const double forward = way.dot(ahead), speed = rate.dot(ahead);
   MovingVector<double>& offset = foot_offset_[swings];
-  if (!(speed > walks)) {  // it still stands, or again
-    approach(offset[2], 0, lifts, h);
+  const bool swings_now = speed > walks;
+  approach(offset[2], swings_now ? kClears * unit_ : 0, lifts, h);
+  if (!swings_now) {  // it still stands, or again
     for (int a = 0; a < 2; ++a) offset[a] = TimeJet<double>(offset[a].value);
     return;
   }
   const double left = std::clamp((walks * step_time - forward) / speed, kSoonest, step_time);
-  approach(offset[2], kClears * unit_, lifts, h);
   const Vec2 off = portable::exp(frequency_ * left) * error_.capture_point(frequency_);
   const Vec2 lands = clip_ankle_now(stands, 0) + way + (walks * step_time - forward) * ahead;
   Feet feet{{}, portable::atan2(ahead.y(), ahead.x())};
