@@ -1,5 +1,6 @@
 // A standing body that is pushed: it presses, steps, puts the foot back, or falls.
 #include <array>
+#include <cstdlib>
 
 #include "fixtures/platform.h"
 #include "pushed.h"
@@ -370,7 +371,10 @@ TEST(Behaviour, LimbsOfOthersAreNoGround) {
   }
 }
 
+/// SINEW_HZ=240 counts at another rate.
 TEST(Behaviour, WhoWalksCatchesItselfByItsNextSteps) {
+  const char* asked = std::getenv("SINEW_HZ");
+  const double hz = asked ? std::atof(asked) : 60;
   const struct {
     double impulse;
     int most;  ///< that are caught, of 32, but for two
@@ -379,11 +383,12 @@ TEST(Behaviour, WhoWalksCatchesItselfByItsNextSteps) {
     int caught = 0;
     for (const double direction : {0.0, kLeft, kBack, -kLeft})
       for (int phase = 0; phase < 8; ++phase) {
-        Walking body;
+        Walking body(hz);
         (void)body.walks_on(impulse, direction, phase, 3);
         caught += !body.fell;
       }
-    GTEST_LOG_(INFO) << impulse << " N s: " << caught << " of 32 are caught";
+    GTEST_LOG_(INFO) << impulse << " N s: " << caught << " of 32 are caught at " << hz << " Hz";
+    if (asked) continue;  // that is for the table of figures
     EXPECT_GE(caught, most - 2);
   }
 }

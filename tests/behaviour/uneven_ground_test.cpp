@@ -1,7 +1,9 @@
 // A body that is pushed, lands or falls where the ground is not the level floor that its clip knows.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include "pushed.h"
 #include "sinew/behaviour/stance.h"
@@ -111,6 +113,27 @@ TEST(UnevenGround, WhoIsDroppedLandsOnHisFeet) {
       EXPECT_EQ(body.behaviour.state(), BehaviourState::kClip) << height << " m at " << hz;
       EXPECT_GT(double(body.character().model()[0].translation.z()), 0.85) << height << " m at " << hz;
       EXPECT_LT(highest, 0.97) << height << " m at " << hz;
+    }
+}
+
+/// SINEW_DROPS=30 drops from as many heights in either range.
+TEST(UnevenGround, OfDropsFromHigherFewFell) {
+  const char* asked = std::getenv("SINEW_DROPS");
+  const int drops = asked ? std::max(2, std::atoi(asked)) : 6;
+  for (const double hz : {30.0, 60.0, 120.0, 240.0})
+    for (const auto& [from, to] : {std::pair(0.31, 0.6), std::pair(0.61, 1.19)}) {
+      int fell = 0;
+      for (int n = 0; n < drops; ++n) {
+        Uneven body("stand", hz);
+        body.lift(float(from + (to - from) * n / (drops - 1)));
+        body.run(5);
+        fell += body.fell;
+      }
+      GTEST_LOG_(INFO) << fell << " of " << drops << " fell from " << from << " to " << to << " m at " << hz
+                       << " Hz";
+      if (from < 0.6) {
+        EXPECT_LE(fell, 1 + drops / 10) << hz;
+      }
     }
 }
 

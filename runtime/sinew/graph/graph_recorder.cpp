@@ -109,6 +109,12 @@ RingHead ring_of(std::span<const std::byte> bytes) {
   return ring;
 }
 
+/// The page that is written.
+std::byte* page_of(std::span<std::byte> buffer, std::size_t block_bytes) {
+  const RingHead& ring = *reinterpret_cast<RingHead*>(buffer.data());
+  return buffer.data() + pages_begin(block_bytes) + ring.page * ring.page_bytes;
+}
+
 }  // namespace
 
 std::uint64_t digest_of(std::span<const std::byte> bytes, std::uint64_t seed) {
@@ -154,13 +160,13 @@ GraphRecorder<T>::GraphRecorder(const Graph& graph, std::span<std::byte> buffer)
 template <class T>
 std::byte* GraphRecorder<T>::begin_frame(bool whole) {
   RingHead& ring = *reinterpret_cast<RingHead*>(buffer_.data());
-  const auto page = [&] { return buffer_.data() + pages_begin(block_bytes_) + ring.page * ring.page_bytes; };
   if (whole) {
     if (ring.frames > 0) ring.page = (ring.page + 1) % ring.pages;
-    std::memset(page(), 0, ring.page_bytes);
-    *reinterpret_cast<PageHead*>(page()) = {ring.frames, 0, sizeof(PageHead)};
+    std::memset(page_of(buffer_, block_bytes_), 0, ring.page_bytes);
+    *reinterpret_cast<PageHead*>(page_of(buffer_, block_bytes_)) = {ring.frames, 0, sizeof(PageHead)};
   }
-  return page() + reinterpret_cast<PageHead*>(page())->bytes;
+  std::byte* page = page_of(buffer_, block_bytes_);
+  return page + reinterpret_cast<PageHead*>(page)->bytes;
 }
 
 template <class T>
@@ -169,8 +175,7 @@ Status GraphRecorder<T>::step(const GraphStepJob<T>& job) {
   if (Status status = check_block<T>(job.graph, job.state, true); !status) return status;
   RingHead& ring = *reinterpret_cast<RingHead*>(buffer_.data());
   const std::span<std::byte> after(buffer_.data() + rounded(sizeof(RingHead)), block_bytes_);
-  std::byte* page = buffer_.data() + pages_begin(block_bytes_) + ring.page * ring.page_bytes;
-  const PageHead& last = *reinterpret_cast<PageHead*>(page);
+  const PageHead& last = *reinterpret_cast<PageHead*>(page_of(buffer_, block_bytes_));
   const bool whole = ring.frames == 0 || last.frames >= kMostFrames || last.bytes + most_ > ring.page_bytes ||
                      changed_bytes(after, job.state) > block_bytes_ / 4;
   std::byte* at = begin_frame(whole);
@@ -199,8 +204,7 @@ Status GraphRecorder<T>::step(const GraphStepJob<T>& job) {
   head.digest = digest_after<T>(job.state, job.jets);
   head.words = static_cast<std::uint16_t>(rounded(std::size_t(out.end() - at), 8) / 8);
   std::memcpy(after.data(), job.state.data(), block_bytes_);
-  page = buffer_.data() + pages_begin(block_bytes_) + ring.page * ring.page_bytes;
-  PageHead& now = *reinterpret_cast<PageHead*>(page);
+  PageHead& now = *reinterpret_cast<PageHead*>(page_of(buffer_, block_bytes_));
   now.bytes += 8 * std::uint32_t(head.words);
   ++now.frames;
   ++ring.frames;
