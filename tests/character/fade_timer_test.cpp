@@ -3,36 +3,11 @@
 
 #include <numbers>
 
+#include "character/rods.h"
 #include "character/scenes.h"
 
 namespace sinew {
 namespace {
-
-/// A root that is led, and rods of 2 kg and 1 m on hinges with 30 N·m, one on the other.
-Skeleton chain(int rods) {
-  Skeleton skeleton;
-  skeleton.joints.resize(std::size_t(rods) + 1);
-  Joint& root = skeleton.joints[0];
-  root.name = "root";
-  root.type = JointType::kFree;
-  root.mass = 1;
-  root.inertia = Mat3<double>::Identity();
-  for (int k = 1; k <= rods; ++k) {
-    Joint& rod = skeleton.joints[std::size_t(k)];
-    rod.name = "rod" + std::to_string(k);
-    rod.parent = k - 1;
-    rod.type = JointType::kRevolute;
-    rod.axis = Vec3<double>::UnitY();
-    rod.mass = 2;
-    rod.center_of_mass = {0.5, 0, 0};
-    rod.inertia = Vec3<double>(1e-6, 2.0 / 12, 2.0 / 12).asDiagonal();
-    if (k > 1) rod.rest.translation = {1, 0, 0};
-    for (DofLimits& dof : rod.dofs) dof = {-7, 7, 30, 30, 0, 0};
-  }
-  skeleton.body_count = rods + 1;
-  EXPECT_TRUE(validate(skeleton).ok()) << validate(skeleton).reason;
-  return skeleton;
-}
 
 /// A character in a world, and a transition between two poses at rest.
 struct Scene {
@@ -43,7 +18,7 @@ struct Scene {
   InertialState<double> offset;
 
   explicit Scene(int rods, const Vec3<double>& gravity, double strength = 1)
-      : skeleton(chain(rods)), world(settings(gravity)), to(std::size_t(rods) + 1) {
+      : skeleton(fixtures::rods(rods)), world(settings(gravity)), to(std::size_t(rods) + 1) {
     CharacterSettings with;
     with.strength = strength;
     Status status;

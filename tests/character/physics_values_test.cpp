@@ -3,35 +3,17 @@
 
 #include <numbers>
 
+#include "character/rods.h"
 #include "character/scenes.h"
 #include "sinew/animation/moving_transform.h"
 
 namespace sinew {
 namespace {
 
-/// A free or driven root of 1 kg; with `rod`, 2 kg and 1 m of it on a hinge about Y.
-Skeleton figure(bool rod) {
-  Skeleton skeleton;
-  skeleton.joints.resize(rod ? 2 : 1);
-  Joint& root = skeleton.joints[0];
-  root.name = "root";
-  root.type = JointType::kFree;
-  root.mass = 1;
-  root.inertia = 0.1 * Mat3<double>::Identity();
-  root.rest.translation = {0, 0, 2};
-  if (rod) {
-    Joint& hinge = skeleton.joints[1];
-    hinge.name = "rod";
-    hinge.parent = 0;
-    hinge.type = JointType::kRevolute;
-    hinge.axis = Vec3<double>::UnitY();
-    hinge.mass = 2;
-    hinge.center_of_mass = {0.5, 0, 0};
-    hinge.inertia = Vec3<double>(1e-3, 2.0 / 12, 2.0 / 12).asDiagonal();
-    for (DofLimits& dof : hinge.dofs) dof = {-7, 7, 30, 30, 0, 0};
-  }
-  skeleton.body_count = static_cast<int>(skeleton.joints.size());
-  EXPECT_TRUE(validate(skeleton).ok()) << validate(skeleton).reason;
+/// So many rods on a root 2 m up.
+Skeleton figure(int rods) {
+  Skeleton skeleton = fixtures::rods(rods);
+  skeleton.joints[0].rest.translation = {0, 0, 2};
   return skeleton;
 }
 
@@ -83,7 +65,7 @@ TEST(PhysicsValues, OfWhoPlaysAreThoseOfItsAnimation) {
 }
 
 TEST(PhysicsValues, TiltAndFaceAreThoseOfTheRootWhereverItHeads) {
-  Scene scene(figure(false), {});
+  Scene scene(figure(0), {});
   const Quat<double> heading = rotation_exp<double>(Vec3<double>(0, 0, 2));
   scene.target[0].rotation = heading * rotation_exp<double>(Vec3<double>(0, -0.7, 0));  // leans back
   scene.target[0].translation.z() = 0.5;
@@ -99,7 +81,7 @@ TEST(PhysicsValues, TiltAndFaceAreThoseOfTheRootWhereverItHeads) {
 TEST(PhysicsValues, OffTheAnimationIsTheMeanDistanceOfAllMass) {
   CharacterSettings limp;
   limp.strength = 0;
-  Scene scene(figure(true), limp);
+  Scene scene(figure(1), limp);
   for (int k = 0; k < 20; ++k) scene.step();
   const Quat<double> turned = scene.hero().local()[1].rotation;
   const double angle = 2 * std::atan2(turned.y(), turned.w());
@@ -109,7 +91,7 @@ TEST(PhysicsValues, OffTheAnimationIsTheMeanDistanceOfAllMass) {
 }
 
 TEST(PhysicsValues, WhatLiesPressesWithItsWeight) {
-  Skeleton box = figure(false);
+  Skeleton box = figure(0);
   Collider& collider = box.colliders.emplace_back();
   collider.shape = Shape::kBox;
   collider.joint = 0;
@@ -130,7 +112,7 @@ TEST(PhysicalMotion, OfABodyThatFallsIsItsOwn) {
   CharacterSettings limp;
   limp.strength = 0;
   limp.root = RootDrive::kFree;
-  Scene scene(figure(true), limp);
+  Scene scene(figure(1), limp);
   scene.target[1].omega = {0, 4, 0};
   scene.target[0].omega = {1, 0.5, 2};
   scene.target[0].velocity = {0.5, 0, 1};

@@ -1,6 +1,7 @@
 // What muscles have left, against figures worked out by hand.
 #include "sinew/character/spare_acceleration.h"
 
+#include "character/rods.h"
 #include "character/scenes.h"
 
 namespace sinew {
@@ -8,24 +9,7 @@ namespace {
 
 /// A fixed root and a rod of 2 kg and 1 m that a hinge with 30 N m holds level: 9.81 N m of load.
 TEST(SpareAcceleration, OfALevelRodIsWhatItsHingeHasLeftOverItsInertia) {
-  Skeleton skeleton;
-  skeleton.joints.resize(2);
-  Joint& root = skeleton.joints[0];
-  root.name = "root";
-  root.type = JointType::kFree;
-  root.mass = 1;
-  root.inertia = Mat3<double>::Identity();
-  Joint& rod = skeleton.joints[1];
-  rod.name = "rod";
-  rod.parent = 0;
-  rod.type = JointType::kRevolute;
-  rod.axis = Vec3<double>::UnitY();
-  rod.mass = 2;
-  rod.center_of_mass = {0.5, 0, 0};
-  rod.inertia = Vec3<double>(1e-6, 2.0 / 12, 2.0 / 12).asDiagonal();
-  for (DofLimits& dof : rod.dofs) dof = {-2, 2, 30, 30, 0, 0};
-  skeleton.body_count = 2;
-  ASSERT_TRUE(validate(skeleton).ok()) << validate(skeleton).reason;
+  const Skeleton skeleton = fixtures::rods(1);
   WorldSettings settings;
   settings.ground = false;
   World<double> world(settings);
