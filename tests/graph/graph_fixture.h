@@ -113,7 +113,7 @@ struct GraphPlayer {
   void step(double h) {
     events.count = events.lost = 0;
     const Status status =
-        GraphStepJob<T>{&graph, state, T(h), &scratch, jets, &events, curves, physical, {}, {}, ground}.Run();
+        GraphStepJob<T>{&graph, state, T(h), &scratch, jets, &events, curves, physical, {}, ground}.Run();
     EXPECT_TRUE(status.ok()) << status.reason;
   }
   /// Name of the state of the machine of this name.

@@ -45,7 +45,7 @@ class GraphRecorders : public testing::Test {
 /// Plays with everything that a game gives.
 template <class T>
 struct Hero : GraphPlayer<T> {
-  std::vector<T> spare = std::vector<T>(std::size_t(this->graph.joint_count()), T(300));
+  std::vector<T> budgets = std::vector<T>(std::size_t(this->graph.joint_count()), T(150));
   using GraphPlayer<T>::GraphPlayer;
 
   GraphStepJob<T> job(int k) {
@@ -55,7 +55,11 @@ struct Hero : GraphPlayer<T> {
     for (std::size_t j = 0; j < this->jets.size(); ++j) this->physical[j] = this->jets[j];
     GraphStepJob<T> job{&this->graph, this->state, T(k ? 1 / 60.0 : 0), &this->scratch, this->jets};
     job.physical = this->physical;
-    job.spare_acceleration = spare;
+    job.muscles.host = &budgets;
+    job.muscles.duration = [](void* host, const FadeQuestion<T>& question) {
+      return inertial_duration<T>(*question.offset, *static_cast<std::vector<T>*>(host), question.least,
+                                  question.most);
+    };
     job.ground.below = slope<T>;
     return job;
   }
@@ -202,7 +206,6 @@ TEST_F(GraphRecorders, DurationsThatMusclesGaveComeAgain) {
   int asked = 0;
   for (int k = 0; k < 110; ++k) {
     GraphStepJob<float> job = hero.job(k);
-    job.spare_acceleration = {};
     job.muscles.host = &asked;
     job.muscles.duration = [](void* host, const FadeQuestion<float>& question) {
       EXPECT_EQ(question.destination.size(), asset.skeleton.joints.size());

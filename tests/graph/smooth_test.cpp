@@ -253,10 +253,14 @@ TEST(Graph, TransitionsAreAsFastAsMusclesAllow) {
                        asset, graph);
   const auto duration = [&](double spare) {
     GraphPlayer<double> player(graph);
-    const std::vector<double> spares(fixtures::kGraphJoints, spare);
+    std::vector<double> budgets(fixtures::kGraphJoints, 0.5 * spare);
+    const auto muscles = [](void* host, const FadeQuestion<double>& question) {
+      const auto& each = *static_cast<std::vector<double>*>(host);
+      return inertial_duration<double>(*question.offset, each, question.least, question.most);
+    };
     const auto frame = [&](double h) {
       GraphStepJob<double> job{&graph, player.state, h, &player.scratch, player.jets};
-      job.spare_acceleration = spares;
+      job.muscles = {muscles, &budgets};
       ASSERT_TRUE(job.Run().ok());
     };
     frame(0);

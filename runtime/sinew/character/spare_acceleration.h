@@ -9,7 +9,7 @@ namespace sinew {
 
 /// `out` [joint]: by how much the muscles could turn each joint faster than they do now, rad/s²: the least of
 /// (limit − |torque|) / inertia over its degrees of freedom, the inertia that of all that hangs on the joint
-/// about its origin, at most (half of the trace). As GraphPoseJob and inertial_duration() take it. Joints
+/// about its origin, at most (half of the trace). As inertial_duration() takes it. Joints
 /// that no muscle moves, and those without a body, do not limit anything: 10⁶.
 ///
 /// What is left of the motion of the last step. FadeTimer (fade_timer.h) asks about the motion gone to

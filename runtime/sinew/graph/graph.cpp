@@ -331,7 +331,7 @@ GraphScratch<T>::GraphScratch(const Graph& graph) : hash(graph.hash()) {
   rotations.resize(2 * joints);
   offset.resize(inertial_numbers(graph.joint_count(), graph.translated()));
   left.resize(joints);
-  spare.resize(joints);
+  profile.resize(joints);
   tasks.resize(std::size_t(needs.tasks));
   weights.resize(std::size_t(needs.weights));
   members.resize(std::size_t(needs.members));

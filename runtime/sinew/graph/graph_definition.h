@@ -85,7 +85,7 @@ struct GraphTransition {
   TransitionKind kind = TransitionKind::kInertial;  ///< how
   float duration = 0.25f;                           ///< s
   /// > 0: as long as the joints' muscles need, who may spend this share of what they can spare on it
-  /// (GraphPoseJob::spare_acceleration); `duration` is the longest then.
+  /// (GraphPoseJob::muscles); `duration` is the longest then, and without them.
   float budget = 0;
   Interruption interrupt = Interruption::kAny;  ///< by what, while it runs
   std::vector<int> interrupted_by;              ///< kListed: states

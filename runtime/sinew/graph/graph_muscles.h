@@ -10,8 +10,7 @@ namespace sinew {
 ///     job.muscles = {sinew::FadeTimer<float>::answer, &timer};
 template <class T>
 struct GraphMuscles {
-  /// s, within question.least and question.most; what is not is moved there. Null: as long as
-  /// GraphPoseJob::spare_acceleration says.
+  /// s, within question.least and question.most; what is not is moved there. Null: question.most.
   T (*duration)(void* host, const FadeQuestion<T>& question) = nullptr;
   void* host = nullptr;  ///< what it gets
 };

@@ -293,10 +293,7 @@ class Pose {
       m.travel.velocity[k] = before.travel.velocity[k] - after.travel.velocity[k];
       m.travel.change[k] = before.travel.change[k] - after.travel.change[k];
     }
-    if (t.budget > 0 && job_.muscles.duration)
-      ask_muscles(state, t, after, m);
-    else if (t.budget > 0 && job_.spare_acceleration.size() >= std::size_t(graph_.joint_count()))
-      shorten(state, t, m);
+    if (t.budget > 0 && job_.muscles.duration) ask_muscles(state, t, after, m);
     return {};
   }
   /// The host, about the motion gone to, where the character stands.
@@ -309,22 +306,14 @@ class Pose {
     const T asked = job_.muscles.duration(job_.muscles.host, {there, &state, T(t.budget), least, m.duration});
     if (asked < m.duration) m.duration = std::max(asked, least);
   }
-  /// As long as the muscles need, of what they can spare at present.
-  void shorten(const InertialState<T>& state, const GraphTransition& t, GraphMachineState<T>& m) {
-    const std::span<T> spare = s_.spare;
-    s_.asks_spare = true;
-    for (std::size_t j = 0; j < spare.size(); ++j)
-      spare[j] = std::max(T(1e-3), T(t.budget) * job_.spare_acceleration[j]);
-    m.duration = std::min(m.duration, inertial_duration<T>(state, spare, T(kLeastFade), m.duration));
-  }
   /// [joint] which part of the duration it takes; empty: all of it.
   std::span<const T> profile_of(const Graph::BoundMachine& machine, int transition) {
     const int mask = machine.profiles[std::size_t(transition)];
     if (mask < 0) return {};
     const T share = T(graph_.node(machine.node).transitions[std::size_t(transition)].share);
-    for (std::size_t j = 0; j < s_.spare.size(); ++j)
-      s_.spare[j] = T(1) - (T(1) - share) * s_.masks[std::size_t(mask)][j];
-    return s_.spare;
+    for (std::size_t j = 0; j < s_.profile.size(); ++j)
+      s_.profile[j] = T(1) - (T(1) - share) * s_.masks[std::size_t(mask)][j];
+    return s_.profile;
   }
   Status offset(const GraphTask& task, std::size_t joints) {
     const GraphMachineState<T>& m = block_.machine(task.index);

@@ -31,10 +31,9 @@ struct GraphPoseJob {
   std::span<JointJet<T>> jets;                 ///< [joint]: what the character is to do, 1 … all joints
   std::span<TimeJet<T>> curves = {};           ///< [slot], where wanted
   std::span<const JointJet<T>> physical = {};  ///< [joint] what it does do, for NodeType::kPhysical
-  std::span<const T> spare_acceleration = {};  ///< [joint] rad/s², see GraphTransition::budget
   GraphWatch<T> watch = {};                    ///< for tools
   GraphGround<T> ground = {};                  ///< for NodeType::kFeet
-  GraphMuscles<T> muscles = {};                ///< for GraphTransition::budget, before spare_acceleration
+  GraphMuscles<T> muscles = {};                ///< for GraphTransition::budget
 
   /// Refuses a block or scratch of another graph, no joints or too many, and a graph that plays a physical
   /// pose which is not given for all joints.

@@ -97,10 +97,6 @@ void keep_rest(const Tap<T>& tap, const GraphScratch<T>& scratch) {
     tap.head.set(kPhysical);
     for (std::size_t j = 0; j < joints; ++j) tap.out.jet(job.physical[j]);
   }
-  if (scratch.asks_spare && job.spare_acceleration.size() >= joints) {
-    tap.head.set(kSpare);
-    for (std::size_t j = 0; j < joints; ++j) tap.out.number(job.spare_acceleration[j]);
-  }
 }
 
 RingHead ring_of(std::span<const std::byte> bytes) {
@@ -196,7 +192,7 @@ Status GraphRecorder<T>::step(const GraphStepJob<T>& job) {
     head.set(kMuscles);
     tapped.muscles = {Tap<T>::duration, &tap};
   }
-  job.scratch->shows_physical = job.scratch->asks_spare = false;
+  job.scratch->shows_physical = false;
   const std::byte* rays = out.end();
   const Status status = tapped.Run();
   head.ray_bytes = static_cast<std::uint16_t>(out.end() - rays);
@@ -268,7 +264,6 @@ GraphFrame<T> GraphReplay<T>::info(int k) const {
   out.bytes = 8 * std::uint32_t(head.words);
   out.whole = head.has(kWhole);
   out.physical = head.has(kPhysical);
-  out.spare = head.has(kSpare);
   out.ground = head.has(kGround);
   out.muscles = head.has(kMuscles);
   out.complete = !head.has(kIncomplete);
@@ -313,7 +308,6 @@ Status GraphReplay<T>::play(int k, GraphScratch<T>& scratch, std::span<JointJet<
   std::array<T, kMostDurations> durations{};
   std::array<MovingTransform<T>, kMostBodies> bodies;
   std::vector<JointJet<T>> physical(frame.physical ? joints : 0);
-  std::vector<T> spare(frame.spare ? joints : 0);
   in.skip_block(head, block_.size());
   Answers answers{in, frame.rays, &rays_, {}};
   in.skip(head.ray_bytes);
@@ -322,13 +316,11 @@ Status GraphReplay<T>::play(int k, GraphScratch<T>& scratch, std::span<JointJet<
   for (std::size_t n = 0; n < asked; ++n) durations[n] = in.number();
   for (std::size_t n = 0; n < moving; ++n) bodies[n] = in.body();
   for (JointJet<T>& jet : physical) jet = in.jet();
-  for (T& x : spare) x = in.number();
   if (!in.good()) return Status::error(Code::kBadFile, "recording is damaged", k);
   answers.durations = {durations.data(), asked};
   Answers* const host = &answers;
   GraphStepJob<T> job{&graph_, block_, frame.h, &scratch, jets.first(frame.joints), events};
   job.physical = physical;
-  job.spare_acceleration = spare;
   if (frame.ground) job.ground = {Answers::below, &host};
   job.ground.bodies = {bodies.data(), moving};
   if (frame.muscles) job.muscles = {Answers::duration, &answers};

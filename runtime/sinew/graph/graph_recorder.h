@@ -28,7 +28,6 @@ struct GraphFrame {
   std::uint32_t bytes = 0;      ///< that it takes in the recording
   bool whole = false;           ///< the block before it is there; else what the game changed of it
   bool physical = false;        ///< GraphStepJob::physical was shown, and is kept
-  bool spare = false;           ///< GraphStepJob::spare_acceleration was asked for, likewise
   bool ground = false;          ///< GraphGround::below was there, where the graph has feet
   bool muscles = false;         ///< GraphMuscles::duration was there
   /// All that went in has found room: no more than 64 rays (frames of a sixth of a second), 8 bodies and 16

@@ -74,7 +74,7 @@ struct GraphScratch {
   std::vector<MovingRotation<T>> rotations;           ///< two per joint
   std::vector<T> offset;                              ///< of the transition that is carried out
   std::vector<JointJet<T>> left;                      ///< [joint] the pose left behind by it, or a reference
-  std::vector<T> spare;                               ///< [joint] rad/s²
+  std::vector<T> profile;                             ///< [joint] of a transition, parts of its duration
 
   // Of one update:
   std::vector<GraphTask> tasks;     ///< in the order in which they are carried out
@@ -98,9 +98,7 @@ struct GraphScratch {
   std::vector<EventHit> hits;              ///< of one clip
   std::vector<float> shares;               ///< [clip] weight in this frame; < 0: not played
   T h = 0;                                 ///< s, of this frame
-  // Of poses since a recorder looked:
-  bool shows_physical = false;  ///< one was of GraphPoseJob::physical
-  bool asks_spare = false;      ///< a transition was as long as GraphPoseJob::spare_acceleration says
+  bool shows_physical = false;             ///< since a recorder looked, a pose was of GraphPoseJob::physical
 };
 
 /// Refuses none, and that of another graph.

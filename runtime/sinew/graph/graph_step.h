@@ -22,7 +22,6 @@ struct GraphStepJob {
   EventSink* events = nullptr;                 ///< where wanted
   std::span<TimeJet<T>> curves = {};           ///< [slot], where wanted
   std::span<const JointJet<T>> physical = {};  ///< as of GraphPoseJob
-  std::span<const T> spare_acceleration = {};  ///< likewise
   GraphWatch<T> watch = {};                    ///< of the last part
   GraphGround<T> ground = {};                  ///< for NodeType::kFeet
   GraphMuscles<T> muscles = {};                ///< as of GraphPoseJob
@@ -40,7 +39,7 @@ struct GraphStepJob {
         events->hits[std::size_t(e)].seconds_ago += static_cast<float>(h * T(parts - k) / T(parts));
       const std::span<JointJet<T>> posed =
           k == parts ? jets : jets.first(std::min<std::size_t>(1, jets.size()));
-      GraphPoseJob<T> pose{graph, state, scratch, posed, curves, physical, spare_acceleration};
+      GraphPoseJob<T> pose{graph, state, scratch, posed, curves, physical};
       if (k == parts) pose.watch = watch;
       pose.ground = ground;
       pose.muscles = muscles;

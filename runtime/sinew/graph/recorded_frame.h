@@ -1,7 +1,7 @@
 // How a frame of a graph's recording is written. Internal to the graph layer.
 //
 //     RingHead · block after the last frame · pages, each: PageHead · frames
-//     frame: FrameHead · block, or patches of it · rays · durations · bodies · physical pose · spare
+//     frame: FrameHead · block, or patches of it · rays · durations · bodies · physical pose
 //     acceleration
 #pragma once
 
@@ -47,14 +47,7 @@ constexpr std::size_t pages_begin(std::size_t block_bytes) {
   return rounded(sizeof(RingHead)) + rounded(block_bytes);
 }
 
-enum FrameFlag : std::uint8_t {
-  kWhole = 1,
-  kPhysical = 2,
-  kSpare = 4,
-  kGround = 8,
-  kMuscles = 16,
-  kIncomplete = 32
-};
+enum FrameFlag : std::uint8_t { kWhole = 1, kPhysical = 2, kGround = 8, kMuscles = 16, kIncomplete = 32 };
 
 /// At the begin of a frame.
 template <class T>
