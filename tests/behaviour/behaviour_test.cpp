@@ -91,13 +91,15 @@ TEST(Behaviour, IsKnockedDownWhenAsked) {
   EXPECT_LT(body.root_height(), 0.3);
 }
 
-/// Walks, and is pushed in a phase of its stride.
+/// Walks or runs, and is pushed in a phase of its stride.
 struct Walking : Pushed {
   Status status;
   Behaviour<float> behaviour;
   bool fell = false;
+  double phases = 0.14;  ///< s, from one to the next
 
-  explicit Walking(double hz = 60) : Pushed("walk"), behaviour(asset.skeleton, {}, status) {
+  explicit Walking(double hz = 60, const char* gait = "walk")
+      : Pushed(gait), behaviour(asset.skeleton, {}, status) {
     h = float(1 / hz);
     behave = [this](std::span<JointJet<float>> wanted) {
       EXPECT_TRUE(behaviour.update(character(), wanted, h));
@@ -107,7 +109,7 @@ struct Walking : Pushed {
   }
   /// Whether it walks on, as its clip does, so many seconds later.
   bool walks_on(double impulse, double direction, int phase, double seconds = 5) {
-    run(2 + 0.14 * phase);
+    run(2 + phases * phase);
     push(impulse, direction);
     run(seconds);
     return !fell && behaviour.state() == BehaviourState::kClip && character().report().unknown_dofs == 0;
@@ -371,19 +373,21 @@ TEST(Behaviour, LimbsOfOthersAreNoGround) {
   }
 }
 
-/// SINEW_HZ=240 counts at another rate.
-TEST(Behaviour, WhoWalksCatchesItselfByItsNextSteps) {
+struct Caught {
+  double impulse;  ///< N·s
+  int of_32;       ///< but for two
+};
+
+/// In 8 phases, `apart` s from each other, and from four sides. SINEW_HZ=240 counts at another rate.
+void expect_caught(const char* gait, double apart, std::initializer_list<Caught> pushes) {
   const char* asked = std::getenv("SINEW_HZ");
   const double hz = asked ? std::atof(asked) : 60;
-  const struct {
-    double impulse;
-    int most;  ///< that are caught, of 32, but for two
-  } kPushes[] = {{10, 32}, {20, 31}, {30, 22}, {45, 16}};
-  for (const auto& [impulse, most] : kPushes) {
+  for (const auto& [impulse, most] : pushes) {
     int caught = 0;
     for (const double direction : {0.0, kLeft, kBack, -kLeft})
       for (int phase = 0; phase < 8; ++phase) {
-        Walking body(hz);
+        Walking body(hz, gait);
+        body.phases = apart;
         (void)body.walks_on(impulse, direction, phase, 3);
         caught += !body.fell;
       }
@@ -393,14 +397,35 @@ TEST(Behaviour, WhoWalksCatchesItselfByItsNextSteps) {
   }
 }
 
+TEST(Behaviour, WhoWalksCatchesItselfByItsNextSteps) {
+  expect_caught("walk", 0.14, {{10, 32}, {20, 31}, {30, 22}, {45, 16}});
+}
+
+TEST(Behaviour, WhoRunsCatchesItselfByItsNextSteps) {
+  expect_caught("run", 0.7 / 8, {{10, 32}, {20, 31}, {30, 28}, {45, 22}});
+}
+
+TEST(Behaviour, WhoRunsIsOnItsAnimationAgain) {
+  int back = 0;
+  for (const double direction : {0.0, kLeft, kBack, -kLeft})
+    for (int phase = 0; phase < 4; ++phase) {
+      Walking body(60, "run");
+      body.phases = 0.7 / 4;
+      back += body.walks_on(10, direction, phase, 3);
+    }
+  EXPECT_GE(back, 14) << "of 16";
+}
+
 TEST(Behaviour, WhoWalkedOnIsOnItsAnimationWhereItWalks) {
-  Walking body;
-  ASSERT_TRUE(body.walks_on(10, kLeft, 0));
-  const Displacement by = body.character().displacement();
-  EXPECT_GT(by.y, 0.02);  // to the left, where it was pushed
-  const Vec3<double> root = body.jets[0].translation.cast<double>();
-  EXPECT_LT((by.turn() * root + Vec3<double>(by.x, by.y, by.z) - body.character().position()).norm(), 1e-4);
-  EXPECT_GE(body.root_height(), 0.85);
+  for (const auto& [impulse, least] : {std::pair(10.0, 0.005), std::pair(20.0, 0.02)}) {
+    Walking body;
+    ASSERT_TRUE(body.walks_on(impulse, kLeft, 0));
+    const Displacement by = body.character().displacement();
+    EXPECT_GT(by.y, least) << "m to the left, where it was pushed";
+    const Vec3<double> root = body.jets[0].translation.cast<double>();
+    EXPECT_LT((by.turn() * root + Vec3<double>(by.x, by.y, by.z) - body.character().position()).norm(), 1e-4);
+    EXPECT_GE(body.root_height(), 0.85);
+  }
 }
 
 /// A curb keeps a foot from landing where it should.

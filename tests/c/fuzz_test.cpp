@@ -191,7 +191,9 @@ class Sequence : FuzzMotion {
     const float velocity[3] = {real(-5, 5), real(-5, 5), real(-5, 5)};
     const double* const way = triple(rarely() ? 1e3 : 0.05);
     const double ride[4] = {way ? way[0] : 0, way ? way[1] : 0, way ? way[2] : 0, number(-0.05, 0.05)};
-    switch (below(6)) {
+    switch (below(7)) {
+      case 6:
+        return sinew_character_lend_hand(handle(people_));
       case 4:
         return sinew_character_ride(handle(people_), or_null(ride));
       case 5:

@@ -16,6 +16,7 @@ namespace {
 constexpr double kMass = 75, kHipHeight = 0.95;          ///< kg, m
 constexpr double kNoticed = 0.01, kNoticedSpeed = 0.08;  ///< m and m/s off the clip, that are a push
 constexpr double kFade = 0.2;                            ///< s, from one plan's pose into the next
+constexpr double kQuickFade = 0.1;                       ///< s, likewise of who walks: his feet land soon
 constexpr double kTrunk = 0.25, kMostTrunk = 15;         ///< s and rad/s², in which the trunk comes upright
 constexpr double kHeight = 0.12;                         ///< s, in which the body comes to its height
 constexpr double kStraight = 0.985;                      ///< of a leg's length, that it reaches
@@ -233,7 +234,7 @@ void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
       for (const FootLeg<T>& leg : body_.legs)
         for (const int joint : {leg.upper, leg.middle, leg.foot})
           last_[static_cast<std::size_t>(joint)] = jets[static_cast<std::size_t>(joint)];
-    const double time = sets_off_ > 0 ? sets_off_ : kFade * std::sqrt(unit_);
+    const double time = sets_off_ > 0 ? sets_off_ : (walks_ ? kQuickFade : kFade) * std::sqrt(unit_);
     (void)begin_inertial<T>(last_, jets, T(time), fade_);
   } else {
     fade_.elapsed += h;
@@ -298,6 +299,8 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   spin_ = known ? Vec3<double>(rotation_log<double>(is.root.rotation * root_before_.conjugate()) / h)
                 : Vec3<double>::Zero();
   root_before_ = is.root.rotation;
+  const bool has_plan = report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep;
+  if (last_step_.root_unknown && clip_walks() && (walks_ || !has_plan)) (void)character.lend_hand();
   if (report_.state == BehaviourState::kClip) {
     // Who is back in a walk, or sets off, is led: no ground gives all that the way there asks for.
     if (fade_.running() && fades_root_ && clip_walks()) (void)character.come_back();
@@ -324,7 +327,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   if (landing_ == Landing::kLanded) end_step(is, jets);  // its feet stand where they came down
   if (landing_ == Landing::kLands) give_in(is, jets[0]);
   if (walks_ && clip_velocity_.norm() < kStops * pace_) stop_walking(is, jets);
-  if (walks_) return walk_on(character, world, h);
+  if (walks_) return walk_on(character, world, jets[0], h);
   if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time) end_step(is, jets);
   const Vec2 off = from_above(is.mass.place) - plan_.place,
              faster = from_above(is.mass.velocity) - plan_.velocity;

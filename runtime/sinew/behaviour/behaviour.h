@@ -218,7 +218,7 @@ class Behaviour {
   void begin_trunk(const MeasuredBody& is, const JointJet<T>& root);
   void begin_walk(Character<T>& character, const MeasuredBody& world, std::span<const JointJet<T>> jets,
                   double h);
-  void walk_on(Character<T>& character, const MeasuredBody& world, double h);
+  void walk_on(Character<T>& character, const MeasuredBody& world, const JointJet<T>& root, double h);
   Displacement to_standing_foot(const MeasuredBody& is, double h) const;
   void change_feet(Character<T>& character, const MeasuredBody& world, double h);
   void move_offset(double h);

@@ -15,21 +15,39 @@ namespace sinew {
 namespace {
 
 // Of a human.
-constexpr double kChanges = 0.7;   ///< of the standing foot's speed, at which the other one stands
-constexpr double kStepTime = 0.5;  ///< s
-constexpr double kSoonest = 0.05;  ///< s, in which a foot can land
-constexpr double kShares = 3, kQuickest = 0.04;  ///< of that time, s: in which it goes elsewhere
-constexpr double kClears = 0.04, kLifts = 0.04;  ///< m and s: by and in which it is lifted, not to stumble
-constexpr double kYields = 0.08;                 ///< s, in which a foot is asked to be where it came to stand
-constexpr double kObserved = 0.4;                ///< s, in which what it plans comes to what it does
-constexpr double kPresses = 0.1;                 ///< m, that its feet press elsewhere than its animation's
+constexpr double kChanges = 0.7;  ///< of the standing foot's speed, at which the other one stands
+constexpr double kStepTime = 0.5, kStepPace = 1.3;  ///< s, at that many m/s
+constexpr double kLonger = 0.4;                     ///< m, than its animation's step
+constexpr double kSoonest = 0.05;                   ///< s, in which a foot can land
+constexpr double kShares = 3, kQuickest = 0.04;     ///< of that time, s: in which it goes elsewhere
+constexpr double kClears = 0.04, kLifts = 0.04;     ///< m and s: by and in which it is lifted, not to stumble
+constexpr double kYields = 0.08;   ///< s, in which a foot is asked to be where it came to stand
+constexpr double kObserved = 0.4;  ///< s, in which what it plans comes to what it does
+constexpr double kRises = 0.08;    ///< s, likewise of its height
+constexpr double kPresses = 0.1;   ///< m, that its feet press elsewhere than its animation's
 // What it may be off when it is led back, and more by this share for every step after the second.
 constexpr double kNearly = 0.04, kNearlySpeed = 0.12, kLater = 0.25;  ///< m, m/s
+constexpr double kNearlyPace = 0.1;                                   ///< of its pace: the same of who runs
 
 /// m/s, level.
 template <class T>
 double speed_of(const MovingTransform<T>& foot) {
   return from_above(rate_of(foot.translation).template cast<double>()).norm();
+}
+
+/// s, from one landing to the next: steps get longer and quicker with the pace (Grieve and Gear, "The
+/// relationships between length of stride, step frequency, time of swing and speed of walking", 1966).
+double step_time(double pace, double unit) {
+  const double time = std::sqrt(unit);
+  return kStepTime * time * portable::cbrt(kStepPace * time / std::max(pace, 0.1 * time));
+}
+
+/// m and m/s, upwards, of a target a step before it.
+template <class T>
+TimeJet<double> height_before(const JointJet<T>& target, double h) {
+  const double rate = double(target.velocity.z()), acceleration = double(target.acceleration.z());
+  return {double(target.translation.z()) - h * rate + h * h / 2 * acceleration, rate - h * acceleration,
+          acceleration};
 }
 
 /// Critically damped, h seconds on, exact for any h.
@@ -82,38 +100,46 @@ void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world
   (void)character.set_help(0, weight_ * unit_ * settings_.walk_torque);
   stance_ = speed_of(clip_foot_motion_[0]) <= speed_of(clip_foot_motion_[1]) ? 0 : 1;
   displace(character, to_standing_foot(world.without(character.displacement()), h));
-  foot_offset_[static_cast<std::size_t>(stance_)] = still<double>(Vec3<double>::Zero());
   const MeasuredBody is = world.without(character.displacement());
-  const auto swings = static_cast<std::size_t>(1 - stance_);
-  const Vec2 off = from_above(is.foot[swings].translation) - clip_ankle_now(swings, h);
-  foot_offset_[swings] = still<double>(Vec3<double>(off.x(), off.y(), 0));
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Vec2 off = from_above(is.foot[side].translation) - clip_ankle_now(side, h);
+    foot_offset_[side] = still<double>(Vec3<double>(off.x(), off.y(), 0));
+  }
   error_ = {from_above(is.mass.place) - (clip_body_ - h * clip_velocity_),
             from_above(is.mass.velocity) - clip_velocity_};
   frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z() - ground_, 0.3 * unit_));
   begin_trunk(is, jets[0]);
+  const TimeJet<double> wanted = height_before(jets[0], h);
+  height_ = {is.root.translation.z() - wanted.value, is.mass.velocity.z() - wanted.rate, 0.0};
   fades_ = true;
   fades_root_ = false;
-  walk_on(character, world, h);
+  walk_on(character, world, jets[0], h);
 }
 
 template <class T>
-void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, double h) {
+void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, const JointJet<T>& root,
+                           double h) {
   if (!last_step_.root_unknown) return return_to_clip(character);
   const auto stands = static_cast<std::size_t>(stance_);
   if (speed_of(clip_foot_motion_[1 - stands]) < kChanges * speed_of(clip_foot_motion_[stands]))
     change_feet(character, world, h);
   const MeasuredBody is = world.without(character.displacement());
+  const double time = std::sqrt(unit_);
   const Vec2 off = from_above(is.mass.place) - (clip_body_ - h * clip_velocity_) - error_.place,
              faster = from_above(is.mass.velocity) - clip_velocity_ - error_.velocity;
-  const double share = std::min(1.0, h / (kObserved * std::sqrt(unit_)));
+  const double share = std::min(1.0, h / (kObserved * time));
   error_.place += share * off;
   error_.velocity += share * faster;
-  const Vec3<double> tilt = rotation_log<double>(is.root.rotation * clip_root_.conjugate()) - turn_;
-  turn_ += share * tilt;
+  const Quat<double> clip = rotation_exp<double>(Vec3<double>(-h * clip_spin_)) * clip_root_;
+  turn_ += share * (rotation_log<double>(is.root.rotation * clip.conjugate()) - turn_);
   turn_rate_ += share * (spin_ - clip_spin_ - turn_rate_);
+  const TimeJet<double> wanted = height_before(root, h);
+  const double rises = std::min(1.0, h / (kRises * time));
+  height_.value += rises * (is.root.translation.z() - wanted.value - height_.value);
+  height_.rate += rises * (is.mass.velocity.z() - wanted.rate - height_.rate);
   const double late = 1 + kLater * std::max(report_.steps - 2, 0);
   if (report_.steps > 0 && error_.place.norm() < late * kNearly * unit_ &&
-      error_.velocity.norm() < late * kNearlySpeed * std::sqrt(unit_))
+      error_.velocity.norm() < late * std::max(kNearlySpeed * time, kNearlyPace * clip_velocity_.norm()))
     (void)character.come_back();
   const Vec2 capture = error_.capture_point(frequency_);
   Vec2 pressed = 2 * capture;
@@ -134,7 +160,7 @@ void Behaviour<T>::move_offset(double h) {
   const double lifts = kLifts * std::sqrt(unit_);
   for (int a = 0; a < 2; ++a) approach(foot_offset_[stands][a], 0, kYields * std::sqrt(unit_), h);
   approach(foot_offset_[stands][2], 0, lifts, h);
-  const double walks = std::max(clip_velocity_.norm(), 1e-3), step_time = kStepTime * std::sqrt(unit_);
+  const double walks = std::max(clip_velocity_.norm(), 1e-3), time_of_step = step_time(walks, unit_);
   const Vec2 ahead = clip_velocity_ / walks;
   const Vec2 way = from_above(Vec3<double>((value_of(swing) - value_of(stance)).template cast<double>())),
              rate = from_above(Vec3<double>((rate_of(swing) - rate_of(stance)).template cast<double>()));
@@ -146,12 +172,16 @@ void Behaviour<T>::move_offset(double h) {
     for (int a = 0; a < 2; ++a) offset[a] = TimeJet<double>(offset[a].value);
     return;
   }
-  const double left = std::clamp((walks * step_time - forward) / speed, kSoonest, step_time);
+  const double left = std::clamp((walks * time_of_step - forward) / speed, kSoonest, time_of_step);
   const Vec2 off = portable::exp(frequency_ * left) * error_.capture_point(frequency_);
-  const Vec2 lands = clip_ankle_now(stands, 0) + way + (walks * step_time - forward) * ahead;
+  const Vec2 lands = clip_ankle_now(stands, 0) + way + (walks * time_of_step - forward) * ahead;
   Feet feet{{}, portable::atan2(ahead.y(), ahead.x())};
   feet.place[stands] = clip_ankle_now(stands, 0);
-  const Vec2 to = within_reach(feet, static_cast<int>(swings), lands + off, law_) - lands;
+  BalanceLaw law = law_;
+  const Vec2 step = lands - feet.place[stands], left_of(-ahead.y(), ahead.x());
+  law.longest_step = std::max(law.longest_step, step.norm() + kLonger * unit_);
+  law.apart = std::min(law.apart, (swings == 0 ? 1 : -1) * step.dot(left_of));
+  const Vec2 to = within_reach(feet, static_cast<int>(swings), lands + off, law) - lands;
   const double time = std::max(left / kShares, kQuickest * std::sqrt(unit_));
   for (int a = 0; a < 2; ++a) approach(offset[a], to[a], time, h);
 }
@@ -182,7 +212,7 @@ void Behaviour<T>::write_walk(std::span<JointJet<T>> jets, double h) {
   template void Behaviour<T>::change_feet(Character<T>&, const MeasuredBody&, double);                     \
   template void Behaviour<T>::begin_walk(Character<T>&, const MeasuredBody&, std::span<const JointJet<T>>, \
                                          double);                                                          \
-  template void Behaviour<T>::walk_on(Character<T>&, const MeasuredBody&, double);                         \
+  template void Behaviour<T>::walk_on(Character<T>&, const MeasuredBody&, const JointJet<T>&, double);     \
   template void Behaviour<T>::move_offset(double);                                                         \
   template void Behaviour<T>::write_walk(std::span<JointJet<T>>, double);
 SINEW_WALK_INSTANCES(float)

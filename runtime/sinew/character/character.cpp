@@ -271,6 +271,13 @@ Status Character<T>::come_back() {
 }
 
 template <class T>
+Status Character<T>::lend_hand() {
+  if (!state_) return nobody();
+  state_->grounding.lends = true;
+  return {};
+}
+
+template <class T>
 Status Character<T>::set_help(double force, double torque) {
   if (!state_) return nobody();
   if (std::isnan(force) || std::isnan(torque)) return Status::error(Code::kNotFinite, "help is not a number");

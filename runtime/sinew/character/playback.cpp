@@ -250,6 +250,13 @@ void lead_root(CharacterState<T>& s, const CheckContext<T>& context) {
 }
 
 template <class T>
+void lend_hand(CharacterState<T>& s, const CheckContext<T>& context) {
+  if (!s.grounded() || !s.floats || s.passive()) return;
+  s.grounding.hand = beyond_any_floor(s, context);
+  s.refresh_limits();
+}
+
+template <class T>
 bool play(CharacterState<T>& s, T h, const CheckContext<T>& context) {
   s.set_leads(false);
   if (s.is_struck(T(context.world.accuracy.return_time))) return false;

@@ -229,6 +229,8 @@ void CharacterState<T>::refresh_limits() {
         const bool assisted = settings.root == RootDrive::kAssisted && !is_prop;
         minus = plus = assisted ? T(k < 3 ? settings.root_force : settings.root_torque) : T(0);
         if (grounded()) minus = plus = scaled(help_at_most(k < 3), T(settings.strength));
+        if (grounded() && grounding.lends)
+          minus = plus += (k < 3 ? grounding.hand.force : grounding.hand.moment).norm();
         if (grounded() && grounding.leads) minus = plus = std::numeric_limits<T>::infinity();
       }
       problem.law.torque_minus[dof] = minus;

@@ -79,9 +79,10 @@ struct Grounding {
   RootWrench<T> hand;  ///< in this step: what no floor could give to what its animation does
   /// m, of what its animation last stood on, but for `by`.
   double level = std::numeric_limits<double>::max();
-  bool lent = false;        ///< whether the check has left that to an invisible hand
+  bool lent = false;        ///< whether that is left to an invisible hand
   bool leads = false;       ///< its root is borne where the animation has it, in this step
   bool comes_back = false;  ///< Character::come_back() in this step
+  bool lends = false;       ///< Character::lend_hand() in this step
   bool rides = false;       ///< Character::ride() in this step
   bool returns = false;     ///< next to its animation, where it may be played if ground and muscles can do it
 };

@@ -262,10 +262,14 @@ class Character {
   /// The same before a step, of an animation that goes there in it, as taken along by what it stands on: the
   /// next target is given with the root's speed of that way, and the body is where it is wanted.
   Status ride(const Displacement& further);
-  /// A grounded root that moves nearly as its animation wants it (6 cm, 6°, 0.12 m/s and 0.6 rad/s of a
-  /// human) is led back onto it from the end of the next step on, from where it is and as fast as it is: who
+  /// A grounded root that moves nearly as its animation wants it (6 cm, 6°, 0.12 m/s or a tenth of the
+  /// animation's speed, and 0.6 rad/s of a human) is led back onto it from the end of the next step on, from where it is and as fast as it is: who
   /// walks does not come to rest. What the ground can't give then is help that nobody meters.
   Status come_back();
+  /// In the next step a grounded root that is free may be given, besides its help, as much as its target asks
+  /// of no floor at all: a run is at fault itself where it pushes off before its feet are down, and who was
+  /// pushed while he runs would fall from that. Metered as help.
+  Status lend_hand();
   /// What may hold a grounded root besides the ground from now on, N and N·m; negative: as in its settings.
   Status set_help(double force, double torque);
   /// How much work it may get from the next step on. Refuses what validate() does; `detail` stays then.
