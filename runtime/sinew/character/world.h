@@ -263,8 +263,9 @@ class Character {
   /// next target is given with the root's speed of that way, and the body is where it is wanted.
   Status ride(const Displacement& further);
   /// A grounded root that moves nearly as its animation wants it (6 cm, 6°, 0.12 m/s or a tenth of the
-  /// animation's speed, and 0.6 rad/s of a human) is led back onto it from the end of the next step on, from where it is and as fast as it is: who
-  /// walks does not come to rest. What the ground can't give then is help that nobody meters.
+  /// animation's speed, and 0.6 rad/s of a human) is led back onto it from the end of the next step on, from
+  /// where it is and as fast as it is: who walks does not come to rest. What the ground can't give then is
+  /// help that nobody meters.
   Status come_back();
   /// In the next step a grounded root that is free may be given, besides its help, as much as its target asks
   /// of no floor at all: a run is at fault itself where it pushes off before its feet are down, and who was
