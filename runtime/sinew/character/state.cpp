@@ -228,9 +228,11 @@ void CharacterState<T>::refresh_limits() {
       if (root) {
         const bool assisted = settings.root == RootDrive::kAssisted && !is_prop;
         minus = plus = assisted ? T(k < 3 ? settings.root_force : settings.root_torque) : T(0);
-        if (grounded()) minus = plus = scaled(help_at_most(k < 3), T(settings.strength));
-        if (grounded() && grounding.lends)
-          minus = plus += (k < 3 ? grounding.hand.force : grounding.hand.moment).norm();
+        if (grounded()) {
+          const Vec3<T>& hand = k < 3 ? grounding.hand.force : grounding.hand.moment;
+          const double lent = grounding.lends ? double(hand.norm()) : 0;
+          minus = plus = scaled(help_at_most(k < 3) + lent, T(settings.strength));
+        }
         if (grounded() && grounding.leads) minus = plus = std::numeric_limits<T>::infinity();
       }
       problem.law.torque_minus[dof] = minus;
