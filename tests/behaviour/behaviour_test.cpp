@@ -402,7 +402,7 @@ TEST(Behaviour, WhoWalksCatchesItselfByItsNextSteps) {
 }
 
 TEST(Behaviour, WhoRunsCatchesItselfByItsNextSteps) {
-  expect_caught("run", 0.7 / 8, {{10, 32}, {20, 31}, {30, 28}, {45, 22}});
+  expect_caught("run", 0.7 / 8, {{10, 32}, {20, 30}, {30, 28}, {45, 22}});
 }
 
 TEST(Behaviour, WhoRunsIsOnItsAnimationAgain) {
