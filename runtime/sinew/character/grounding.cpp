@@ -25,7 +25,7 @@ constexpr double kAlone = 3;
 // Of who is asked to come back: what it may be off.
 constexpr double kNear = 0.06, kNearTurn = 0.105;          ///< m, rad
 constexpr double kNearSpeed = 0.12, kNearTurnSpeed = 0.6;  ///< m/s, rad/s
-constexpr double kNearPace = 0.1;                          ///< of its target's speed: of who runs
+constexpr double kNearPace = 0.1;                          ///< of its target's speed over ground: of who runs
 
 /// The displacement that takes the animation's root to the body's: the turn about the vertical that leaves
 /// the least tilt, and up or down where it stands on ground of another height. It does not lie in that by the
@@ -83,7 +83,8 @@ template <class T>
 bool is_led_back(CharacterState<T>& s) {
   const T time = s.tree.scale.time, unit = s.tree.scale.length;
   Deviation<T>& root = s.deviation[0];
-  const T fast = std::max(T(kNearSpeed) * unit / time, T(kNearPace) * s.target[0].velocity.norm());
+  const Vec3<T> over_ground = s.target[0].velocity - s.report.ground.velocity.template cast<T>();
+  const T fast = std::max(T(kNearSpeed) * unit / time, T(kNearPace) * over_ground.norm());
   if (!within(root.offset, 0, 3, T(kNear) * unit) || !within(root.offset, 3, 6, T(kNearTurn)) ||
       !within(root.rate, 0, 3, fast) || !within(root.rate, 3, 6, T(kNearTurnSpeed) / time))
     return false;
