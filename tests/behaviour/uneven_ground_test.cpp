@@ -1,5 +1,6 @@
 // A body that is pushed, lands or falls where the ground is not the level floor that its clip knows.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -135,6 +136,30 @@ TEST(UnevenGround, OfDropsFromHigherFewFell) {
         EXPECT_LE(fell, 1 + drops / 10) << hz;
       }
     }
+}
+
+/// His animation goes on at the height of the upper level. The edge is at eight places of a stride.
+TEST(UnevenGround, WhoWalksOffALowStepWalksOnBelow) {
+  const std::array<std::pair<double, int>, 3> kSteps{
+      {{0.02, 20}, {0.05, 20}, {0.1, 10}}};  // m, of 24 but for two
+  for (const auto& [step, most] : kSteps) {
+    int walks_on = 0;
+    for (const double hz : {30.0, 60.0, 120.0})
+      for (int place = 0; place < 8; ++place) {
+        Uneven body("walk", hz);
+        Collider upper;
+        upper.shape = Shape::kBox;
+        upper.size = {5, 5, step / 2};
+        upper.local.translation = {2 + 0.17 * place - upper.size.x(), 0, step / 2};
+        ASSERT_TRUE(body.world.add_obstacle(upper));
+        body.lift(float(step));
+        body.run(6);
+        walks_on += !body.fell && body.behaviour.state() == BehaviourState::kClip &&
+                    std::abs(body.character().displacement().z + step) < 0.01;
+      }
+    GTEST_LOG_(INFO) << walks_on << " of 24 walk on below a step of " << step << " m";
+    EXPECT_GE(walks_on, most - 2) << step;
+  }
 }
 
 /// Nothing but a rope at his chest bears him: that is no fall.

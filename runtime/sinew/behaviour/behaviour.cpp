@@ -252,6 +252,7 @@ template <class T>
 void Behaviour<T>::see_clip(const Character<T>& character, std::span<const JointJet<T>> jets) {
   const MassMotion clip = body_.mass_of(jets, model_);
   clip_velocity_ = from_above(clip.velocity);
+  clip_acceleration_ = clip.acceleration;
   clip_body_ = from_above(clip.place);
   clip_root_ = jets[0].rotation.template cast<double>().normalized();
   clip_spin_ = clip_root_ * jets[0].omega.template cast<double>();
@@ -264,9 +265,12 @@ void Behaviour<T>::see_clip(const Character<T>& character, std::span<const Joint
     clip_foot_[side] = from_above(clip_ankle_[side].translation) - clip_body_;
     middle += from_above(clip_ankle_[side].translation) / 2;
   }
-  // Before it has borne anything: under its soles, as flat as they are at rest.
+  // Before it has borne anything: under its soles, as flat as they are at rest. As it was while it catches
+  // itself: what it is led over then is not where its animation is.
   const std::optional<double> known = character.animation_ground();
-  ground_ = known ? *known : std::min(body_.lowest_of(0, clip_ankle_[0]), body_.lowest_of(1, clip_ankle_[1]));
+  if (!walks_)
+    ground_ =
+        known ? *known : std::min(body_.lowest_of(0, clip_ankle_[0]), body_.lowest_of(1, clip_ankle_[1]));
   if (!leveled_) level_ = ground_;
   from_clip_ = clip_body_ - middle;
 }
@@ -300,7 +304,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
                 : Vec3<double>::Zero();
   root_before_ = is.root.rotation;
   const bool has_plan = report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep;
-  if (last_step_.root_unknown && clip_walks() && (walks_ || !has_plan)) (void)character.lend_hand();
+  if (last_step_.root_unknown && clip_walks() && !has_plan) (void)character.lend_hand();
   if (report_.state == BehaviourState::kClip) {
     // Who is back in a walk, or sets off, is led: no ground gives all that the way there asks for.
     if (fade_.running() && fades_root_ && clip_walks()) (void)character.come_back();

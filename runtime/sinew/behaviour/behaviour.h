@@ -115,6 +115,12 @@ enum class Landing : std::uint8_t {
   kLanded,  ///< they have: it has to plan anew where its feet stand
 };
 
+/// Of a foot in the air.
+struct Footfall {
+  Vec2 place = Vec2::Zero();  ///< m, where it lands
+  double in = 0;              ///< s, until it does
+};
+
 /// What a behaviour asks of its character after a step.
 struct LastStep {
   Vec3<double> momentum = Vec3<double>::Zero();  ///< kg·m/s
@@ -219,9 +225,13 @@ class Behaviour {
   void begin_walk(Character<T>& character, const MeasuredBody& world, std::span<const JointJet<T>> jets,
                   double h);
   void walk_on(Character<T>& character, const MeasuredBody& world, const JointJet<T>& root, double h);
+  double beyond_any_floor() const;
+  void follow_ground(Character<T>& character);
   Displacement to_standing_foot(const MeasuredBody& is, double h) const;
   void change_feet(Character<T>& character, const MeasuredBody& world, double h);
-  void move_offset(double h);
+  void move_offset(const MeasuredBody& is, double h);
+  void lead_foot(std::size_t side, const Vec2& to, double in, double h);
+  Footfall footfall(const Vec2& ahead, const Vec2& lands, double left) const;
   Vec2 clip_ankle_now(std::size_t side, double h) const;
   void write_walk(std::span<JointJet<T>> jets, double h);
   void fade(std::span<JointJet<T>> jets, T h);
@@ -257,6 +267,7 @@ class Behaviour {
   std::array<Transform<double>, 2> foot_;  ///< where they stand, or will
   Vec2 from_clip_ = Vec2::Zero();          ///< the clip's centre of mass from the middle of its feet
   std::array<Vec2, 2> clip_foot_;          ///< m, the clip's ankles from its centre of mass
+  Vec3<double> clip_acceleration_ = Vec3<double>::Zero();  ///< m/s², of its centre of mass
   Vec2 clip_body_ = Vec2::Zero(), clip_velocity_ = Vec2::Zero();
   LastStep last_step_;
   bool restored_ = false;  ///< that is the restored world's
@@ -264,8 +275,13 @@ class Behaviour {
   Vec3<double> clip_spin_ = Vec3<double>::Zero();  ///< rad/s, world axes
   bool walks_ = false;                             ///< it was pushed while it walked, and walks on
   int stance_ = 0;                                 ///< the foot that stands, of a walker
-  double pace_ = 0;                                ///< m/s, of its animation when it was pushed
-  Pendulum error_;                                 ///< what a walker is off its animation
+  bool swung_ = false;                             ///< the other one has left the ground
+  double lands_in_ = 0;                            ///< s, in which it lands, sooner than its animation's
+  bool early_ = false;                             ///< the foot that stands has, and its animation's not yet
+  Vec2 lands_ = Vec2::Zero();                      ///< m, where the animation's foot in the air will land
+  double sunk_ = 0;  ///< m, of the animation, since something last bore the body
+  double pace_ = 0;  ///< m/s, of its animation when it was pushed
+  Pendulum error_;   ///< what a walker is off its animation
   /// m, and of its feet.
   std::array<MovingVector<double>, 2> foot_offset_{still<double>(Vec3<double>::Zero()),
                                                    still<double>(Vec3<double>::Zero())};

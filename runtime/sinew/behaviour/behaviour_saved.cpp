@@ -121,6 +121,12 @@ void Behaviour<T>::visit(ByteStream& stream) {
   stream.flag("walks on", walks_);
   stream.value("standing foot of the walk", stance_);
   stream.value("pace of the walk", pace_);
+  stream.flag("the other foot has left the ground", swung_);
+  stream.value("time in which it lands", lands_in_);
+  stream.flag("landed before its animation's", early_);
+  for (int a = 0; a < 2; ++a) stream.value("where its animation's lands", lands_[a]);
+  stream.value("animation sunk", sunk_);
+  stream.value("ground of the animation", ground_);
   visit_pendulum("off the animation", error_, stream);
   for (MovingVector<double>& offset : foot_offset_)
     for (int a = 0; a < 3; ++a) visit_jet("foot off the animation", offset[a], stream);

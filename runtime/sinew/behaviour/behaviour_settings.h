@@ -18,7 +18,9 @@ struct BehaviourSettings {
   double gravity = 9.81;    ///< m/s²: the world's
   int most_steps = 4;       ///< before the body gives up
   double help_torque = 60;  ///< N·m of a human, that may keep the trunk up while it balances; see the report
-  double walk_torque = 120;                 ///< N·m of a human, likewise while steps of a walk catch it
+  double walk_torque = 120;  ///< N·m of a human, likewise while steps of a walk catch it
+  /// N of a human, likewise: a tenth of its weight. Beside it, what the animation asks of no floor by itself.
+  double walk_force = 75;
   double fallen_strength = 0.02;            ///< of the muscles, once it falls: limbs do not flail
   double let_go = 0.15;                     ///< s, in which they come to that
   GetUpPolicy get_up = GetUpPolicy::kAuto;  ///< needs clips, see Behaviour::use_get_ups()

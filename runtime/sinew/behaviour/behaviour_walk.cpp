@@ -3,9 +3,11 @@
 // What it is off its animation, e = x − x̂, is an inverted pendulum as the body itself is, e'' = ω²(e − p), p
 // what its feet press elsewhere than the animation's. The foot in the air lands by the capture point of e at
 // that moment elsewhere, and the animation is displaced under the foot that stands: of e is left what
-// e + e'/ω = 0 takes away by itself (Raibert, "Legged robots that balance", 1986; Pratt et al. 2006).
+// e + e'/ω = 0 takes away by itself (Raibert, "Legged robots that balance", 1986; Pratt et al. 2006). Where
+// that is out of reach the foot lands sooner than the animation's, and stands where its animation's will.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sinew/behaviour/behaviour.h"
 #include "sinew/skeleton/portable_math.h"
@@ -18,16 +20,26 @@ namespace {
 constexpr double kChanges = 0.7;  ///< of the standing foot's speed, at which the other one stands
 constexpr double kStepTime = 0.5, kStepPace = 1.3;  ///< s, at that many m/s
 constexpr double kLonger = 0.4;                     ///< m, than its animation's step
+constexpr double kCrosses = 0.15;                   ///< m, that a foot may land further to the other side
 constexpr double kSoonest = 0.05;                   ///< s, in which a foot can land
+constexpr int kMoments = 8;                         ///< at which it might
+constexpr double kMisses = 0.02;                    ///< m, that make another one worth it
 constexpr double kShares = 3, kQuickest = 0.04;     ///< of that time, s: in which it goes elsewhere
 constexpr double kClears = 0.04, kLifts = 0.04;     ///< m and s: by and in which it is lifted, not to stumble
-constexpr double kYields = 0.08;   ///< s, in which a foot is asked to be where it came to stand
-constexpr double kObserved = 0.4;  ///< s, in which what it plans comes to what it does
-constexpr double kRises = 0.08;    ///< s, likewise of its height
-constexpr double kPresses = 0.1;   ///< m, that its feet press elsewhere than its animation's
+constexpr double kYields = 0.08;     ///< s, in which a foot is asked to be where it came to stand
+constexpr double kObserved = 0.4;    ///< s, in which what it plans comes to what it does
+constexpr double kRises = 0.08;      ///< s, likewise of its height
+constexpr double kAirborne = 0.03;   ///< s that nothing bears it, from which its animation sinks with it
+constexpr double kSags = 0.02;       ///< m, that it may be lower than that before, or a foot higher
+constexpr double kSameLevel = 5e-3;  ///< m, that ground may be higher or lower than its animation's
+constexpr double kPresses = 0.1;     ///< m, that its feet press elsewhere than its animation's
+constexpr double kReaches = 0.02;    ///< m, that an animation's soles may be over what bears them
+constexpr double kGrip = 0.6;        ///< μ of a floor that no animation may blame
 // What it may be off when it is led back, and more by this share for every step after the second.
 constexpr double kNearly = 0.04, kNearlySpeed = 0.12, kLater = 0.25;  ///< m, m/s
 constexpr double kNearlyPace = 0.1;                                   ///< of its pace: the same of who runs
+
+constexpr double kOnTime = std::numeric_limits<double>::infinity();  ///< s: when its animation's does
 
 /// m/s, level.
 template <class T>
@@ -72,7 +84,7 @@ Vec2 Behaviour<T>::clip_ankle_now(std::size_t side, double h) const {
 template <class T>
 Displacement Behaviour<T>::to_standing_foot(const MeasuredBody& is, double h) const {
   const auto stands = static_cast<std::size_t>(stance_);
-  const Vec2 way = from_above(is.foot[stands].translation) - clip_ankle_now(stands, h);
+  const Vec2 way = from_above(is.foot[stands].translation) - (early_ ? lands_ : clip_ankle_now(stands, h));
   return {way.x(), way.y(), 0, 0};
 }
 
@@ -82,6 +94,8 @@ template <class T>
 void Behaviour<T>::change_feet(Character<T>& character, const MeasuredBody& world, double h) {
   stance_ = 1 - stance_;
   ++report_.steps;
+  swung_ = false;
+  lands_in_ = kOnTime;
   const Displacement further = to_standing_foot(world.without(character.displacement()), h);
   (void)character.displace_led(in_world(character, further));
   const Vec2 way(further.x, further.y);
@@ -95,9 +109,11 @@ void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world
                               std::span<const JointJet<T>> jets, double h) {
   report_.state = BehaviourState::kStep;
   walks_ = true;
+  early_ = swung_ = false;
+  lands_in_ = kOnTime;
+  sunk_ = 0;
   sets_off_ = 0;
   pace_ = clip_velocity_.norm();
-  (void)character.set_help(0, weight_ * unit_ * settings_.walk_torque);
   stance_ = speed_of(clip_foot_motion_[0]) <= speed_of(clip_foot_motion_[1]) ? 0 : 1;
   displace(character, to_standing_foot(world.without(character.displacement()), h));
   const MeasuredBody is = world.without(character.displacement());
@@ -116,13 +132,51 @@ void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world
   walk_on(character, world, jets[0], h);
 }
 
+/// The animation goes along to the level that its body has come down to. While nothing bears the body it
+/// sinks as far as the body does, so that its feet reach for lower ground.
+template <class T>
+void Behaviour<T>::follow_ground(Character<T>& character) {
+  double down = 0;
+  if (last_step_.ground.force > 0) {
+    const double off = level_ - ground_ - sunk_, fallen = height_.value - sunk_;
+    const bool other_level = std::abs(off) > kSameLevel * unit_ && std::abs(fallen) > std::abs(off) / 2 &&
+                             (fallen < 0) == (off < 0);
+    down = other_level ? -off - sunk_ : -sunk_;
+    sunk_ = 0;
+  } else if (airborne_ > kAirborne * std::sqrt(unit_)) {
+    down = std::max(-height_.value - kSags * unit_, 0.0);
+    sunk_ += down;
+  }
+  if (down == 0) return;
+  (void)character.displace_led({0, 0, 0, -down});
+  level_ += down;
+  height_.value += down;
+  for (MovingVector<double>& offset : foot_offset_) offset[2].value += down;
+}
+
+/// N, that its animation asks of no floor at all: in the air all, on the ground what it would have to pull or
+/// grip for.
+template <class T>
+double Behaviour<T>::beyond_any_floor() const {
+  const Vec3<double> force = body_.total_mass * (clip_acceleration_ + Vec3<double>(0, 0, settings_.gravity));
+  const double lowest = std::min(body_.lowest_of(0, model_), body_.lowest_of(1, model_));
+  if (lowest > ground_ + kReaches * unit_) return force.norm();
+  const double slips = std::max(from_above(force).norm() - kGrip * std::max(force.z(), 0.0), 0.0);
+  return portable::hypot(slips, std::min(force.z(), 0.0));
+}
+
 template <class T>
 void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, const JointJet<T>& root,
                            double h) {
   if (!last_step_.root_unknown) return return_to_clip(character);
   const auto stands = static_cast<std::size_t>(stance_);
-  if (speed_of(clip_foot_motion_[1 - stands]) < kChanges * speed_of(clip_foot_motion_[stands]))
+  const bool other_stands =
+      speed_of(clip_foot_motion_[1 - stands]) < kChanges * speed_of(clip_foot_motion_[stands]);
+  early_ = early_ && other_stands;  // until its animation's foot stands, too
+  if (!early_ && (other_stands || lands_in_ <= 0)) {
+    early_ = !other_stands;
     change_feet(character, world, h);
+  }
   const MeasuredBody is = world.without(character.displacement());
   const double time = std::sqrt(unit_);
   const Vec2 off = from_above(is.mass.place) - (clip_body_ - h * clip_velocity_) - error_.place,
@@ -137,53 +191,111 @@ void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, c
   const double rises = std::min(1.0, h / (kRises * time));
   height_.value += rises * (is.root.translation.z() - wanted.value - height_.value);
   height_.rate += rises * (is.mass.velocity.z() - wanted.rate - height_.rate);
+  follow_ground(character);
+  (void)character.set_help(weight_ * settings_.walk_force + beyond_any_floor(),
+                           weight_ * unit_ * settings_.walk_torque);
   const double late = 1 + kLater * std::max(report_.steps - 2, 0);
-  if (report_.steps > 0 && error_.place.norm() < late * kNearly * unit_ &&
+  if (report_.steps > 0 && last_step_.ground.force > 0 && error_.place.norm() < late * kNearly * unit_ &&
       error_.velocity.norm() < late * std::max(kNearlySpeed * time, kNearlyPace * clip_velocity_.norm()))
     (void)character.come_back();
   const Vec2 capture = error_.capture_point(frequency_);
   Vec2 pressed = 2 * capture;
   if (const double far = pressed.norm(); far > kPresses * unit_) pressed *= kPresses * unit_ / far;
-  move_offset(h);
+  if (early_)  // its animation still presses where the other foot stands
+    pressed += lands_ - clip_ankle_now(static_cast<std::size_t>(1 - stance_), 0);
+  move_offset(world.without(character.displacement()), h);
   error_.advance(pressed, frequency_, h);
   move_trunk(h);
 }
 
-/// The foot in the air lands by as much elsewhere as the body will be off when it is down, if it can reach
-/// there, and is lifted on its way: a body that is lower than its animation would stumble over the ground.
-/// The one that stands is asked to be where it is.
+/// A foot goes to where it has to be on the ground in so many seconds, whatever its animation's does.
 template <class T>
-void Behaviour<T>::move_offset(double h) {
+void Behaviour<T>::lead_foot(std::size_t side, const Vec2& to, double in, double h) {
+  MovingVector<double>& offset = foot_offset_[side];
+  const MovingVector<T>& clip = clip_foot_motion_[side].translation;
+  const double time = std::max(in / kShares, kQuickest * std::sqrt(unit_));
+  for (int a = 0; a < 2; ++a) {
+    const TimeJet<double> goes{double(clip[a].value), double(clip[a].rate), double(clip[a].acceleration)};
+    TimeJet<double> foot = offset[a] + goes;
+    foot.value -= h * goes.rate;  // a step before
+    foot.rate -= h * goes.acceleration;
+    approach(foot, to[a], time, h);
+    offset[a] = foot - goes;
+  }
+  approach(offset[2], ground_ - body_.lowest_of(side, clip_ankle_[side]), time, h);
+}
+
+/// Where and when the foot in the air lands, of which the animation's lands at `lands` in `left` seconds: by
+/// as much elsewhere as the body will be off when it is down. Where that is out of reach, sooner.
+template <class T>
+Footfall Behaviour<T>::footfall(const Vec2& ahead, const Vec2& lands, double left) const {
   const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
-  const MovingVector<T>&stance = clip_foot_motion_[stands].translation,
-        &swing = clip_foot_motion_[swings].translation;
+  const Vec2 place = clip_ankle_now(stands, 0), step = lands - place, left_of(-ahead.y(), ahead.x());
+  Feet feet{{}, portable::atan2(ahead.y(), ahead.x())};
+  feet.place[stands] = place;
+  BalanceLaw law = law_;
+  law.longest_step = std::max(law.longest_step, step.norm() + kLonger * unit_);
+  law.apart = std::min(law.apart, (swings == 0 ? 1 : -1) * step.dot(left_of)) - kCrosses * unit_;
+  // Where the capture point of the animation will be then, from its landing place (Hof, "The 'extrapolated
+  // center of mass' concept suggests a simple control of balance in walking", 2008).
+  const double grows = portable::exp(frequency_ * step_time(clip_velocity_.norm(), unit_));
+  const Vec2 beyond = step.dot(ahead) / (grows - 1) * ahead - step.dot(left_of) / (grows + 1) * left_of;
+  const Vec2 capture = error_.capture_point(frequency_);
+  Footfall best;
+  double missed = std::numeric_limits<double>::max();
+  for (int n = 0; n <= kMoments && missed > kMisses * unit_; ++n) {
+    const double in = left + n * (kSoonest - left) / kMoments;
+    const Vec2 wanted = place + portable::exp(frequency_ * (in - left)) * (step + beyond) - beyond +
+                        portable::exp(frequency_ * in) * capture;
+    const Vec2 lands_at = within_reach(feet, static_cast<int>(swings), wanted, law);
+    const double misses = std::abs((lands_at - wanted).dot(ahead));
+    if (misses > missed - kMisses * unit_) continue;
+    best = {lands_at, in};
+    missed = misses;
+  }
+  return best;
+}
+
+/// The foot in the air goes to where it will land, and is lifted on its way: a body that is lower than its
+/// animation would stumble over the ground. The one that stands is asked to be where it is.
+template <class T>
+void Behaviour<T>::move_offset(const MeasuredBody& is, double h) {
+  const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
+  MovingVector<double>& offset = foot_offset_[swings];
+  const auto stay = [&] {
+    for (int a = 0; a < 2; ++a) offset[a] = TimeJet<double>(offset[a].value);
+  };
+  if (early_) {
+    lead_foot(stands, lands_, 0, h);
+    return stay();
+  }
   const double lifts = kLifts * std::sqrt(unit_);
   for (int a = 0; a < 2; ++a) approach(foot_offset_[stands][a], 0, kYields * std::sqrt(unit_), h);
   approach(foot_offset_[stands][2], 0, lifts, h);
+  const MovingVector<T>&stance = clip_foot_motion_[stands].translation,
+        &swing = clip_foot_motion_[swings].translation;
   const double walks = std::max(clip_velocity_.norm(), 1e-3), time_of_step = step_time(walks, unit_);
   const Vec2 ahead = clip_velocity_ / walks;
   const Vec2 way = from_above(Vec3<double>((value_of(swing) - value_of(stance)).template cast<double>())),
              rate = from_above(Vec3<double>((rate_of(swing) - rate_of(stance)).template cast<double>()));
-  const double forward = way.dot(ahead), speed = rate.dot(ahead);
-  MovingVector<double>& offset = foot_offset_[swings];
-  const bool swings_now = speed > walks;
-  approach(offset[2], swings_now ? kClears * unit_ : 0, lifts, h);
-  if (!swings_now) {  // it still stands, or again
-    for (int a = 0; a < 2; ++a) offset[a] = TimeJet<double>(offset[a].value);
-    return;
+  const double speed = rate.dot(ahead), still_to_go = walks * time_of_step - way.dot(ahead);
+  if (!(speed > walks)) {  // it still stands, or again: who stands on its toes lifts the rest of it
+    const double higher = is.lowest[swings] - body_.lowest_of(swings, clip_ankle_[swings]);
+    approach(offset[2], !swung_ && higher > kSags * unit_ ? higher : 0, lifts, h);
+    lands_in_ = kOnTime;
+    return stay();
   }
-  const double left = std::clamp((walks * time_of_step - forward) / speed, kSoonest, time_of_step);
-  const Vec2 off = portable::exp(frequency_ * left) * error_.capture_point(frequency_);
-  const Vec2 lands = clip_ankle_now(stands, 0) + way + (walks * time_of_step - forward) * ahead;
-  Feet feet{{}, portable::atan2(ahead.y(), ahead.x())};
-  feet.place[stands] = clip_ankle_now(stands, 0);
-  BalanceLaw law = law_;
-  const Vec2 step = lands - feet.place[stands], left_of(-ahead.y(), ahead.x());
-  law.longest_step = std::max(law.longest_step, step.norm() + kLonger * unit_);
-  law.apart = std::min(law.apart, (swings == 0 ? 1 : -1) * step.dot(left_of));
-  const Vec2 to = within_reach(feet, static_cast<int>(swings), lands + off, law) - lands;
+  swung_ = true;
+  const double left = std::clamp(still_to_go / speed, kSoonest, time_of_step);
+  lands_ = clip_ankle_now(stands, 0) + way + still_to_go * ahead;
+  const Footfall next = footfall(ahead, lands_, left);
+  if (lands_in_ < kOnTime || next.in < left - kSoonest) {
+    lands_in_ = std::min(lands_in_ - h, next.in);
+    return lead_foot(swings, next.place, std::max(lands_in_, 0.0), h);
+  }
+  approach(offset[2], kClears * unit_, lifts, h);
   const double time = std::max(left / kShares, kQuickest * std::sqrt(unit_));
-  for (int a = 0; a < 2; ++a) approach(offset[a], to[a], time, h);
+  for (int a = 0; a < 2; ++a) approach(offset[a], next.place[a] - lands_[a], time, h);
 }
 
 template <class T>
@@ -213,7 +325,11 @@ void Behaviour<T>::write_walk(std::span<JointJet<T>> jets, double h) {
   template void Behaviour<T>::begin_walk(Character<T>&, const MeasuredBody&, std::span<const JointJet<T>>, \
                                          double);                                                          \
   template void Behaviour<T>::walk_on(Character<T>&, const MeasuredBody&, const JointJet<T>&, double);     \
-  template void Behaviour<T>::move_offset(double);                                                         \
+  template double Behaviour<T>::beyond_any_floor() const;                                                  \
+  template void Behaviour<T>::follow_ground(Character<T>&);                                                \
+  template void Behaviour<T>::lead_foot(std::size_t, const Vec2&, double, double);                         \
+  template Footfall Behaviour<T>::footfall(const Vec2&, const Vec2&, double) const;                        \
+  template void Behaviour<T>::move_offset(const MeasuredBody&, double);                                    \
   template void Behaviour<T>::write_walk(std::span<JointJet<T>>, double);
 SINEW_WALK_INSTANCES(float)
 SINEW_WALK_INSTANCES(double)

@@ -196,6 +196,7 @@ MassMotion StandingBody<T>::mass_of(std::span<const JointJet<T>> jets,
     const MovingVector<T> center = model[i] * still<T>(center_of_mass[i]);
     sum.place += double(mass[i]) * value_of(center).template cast<double>();
     sum.velocity += double(mass[i]) * rate_of(center).template cast<double>();
+    sum.acceleration += double(mass[i]) * acceleration_of(center).template cast<double>();
   }
   return sum;
 }
@@ -219,6 +220,16 @@ double StandingBody<T>::lowest_of(std::size_t foot, std::span<const Transform<T>
   T lowest = std::numeric_limits<T>::infinity();
   for (const SolePoint<T>& p : soles[foot])
     lowest = std::min(lowest, (model[static_cast<std::size_t>(p.joint)] * p.local).z());
+  return double(lowest);
+}
+
+template <class T>
+double StandingBody<T>::lowest_of(std::size_t foot, std::span<const MovingTransform<T>> model) const {
+  T lowest = std::numeric_limits<T>::infinity();
+  for (const SolePoint<T>& p : soles[foot]) {
+    const MovingTransform<T>& at = model[static_cast<std::size_t>(p.joint)];
+    lowest = std::min(lowest, (at.rotation.value * p.local + value_of(at.translation)).z());
+  }
   return double(lowest);
 }
 

@@ -13,8 +13,9 @@ namespace sinew {
 
 /// Centre of mass and its velocity.
 struct MassMotion {
-  Vec3<double> place = Vec3<double>::Zero();     ///< m
-  Vec3<double> velocity = Vec3<double>::Zero();  ///< m/s
+  Vec3<double> place = Vec3<double>::Zero();         ///< m
+  Vec3<double> velocity = Vec3<double>::Zero();      ///< m/s
+  Vec3<double> acceleration = Vec3<double>::Zero();  ///< m/s²
 };
 
 /// How far a foot may turn about its ankle: a cone, see Joint::swing_limit.
@@ -59,6 +60,8 @@ struct StandingBody {
   double lowest_of(std::size_t foot, const Transform<double>& place) const;
   /// The same of a pose in model space, its toes bent as they are there.
   double lowest_of(std::size_t foot, std::span<const Transform<T>> model) const;
+  /// Likewise.
+  double lowest_of(std::size_t foot, std::span<const MovingTransform<T>> model) const;
 };
 
 /// What a stance asks for at an instant.
