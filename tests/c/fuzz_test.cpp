@@ -193,7 +193,7 @@ class Sequence : FuzzMotion {
     const double ride[4] = {way ? way[0] : 0, way ? way[1] : 0, way ? way[2] : 0, number(-0.05, 0.05)};
     switch (below(7)) {
       case 6:
-        return sinew_character_lend_hand(handle(people_));
+        return sinew_character_give_hand(handle(people_));
       case 4:
         return sinew_character_ride(handle(people_), or_null(ride));
       case 5:

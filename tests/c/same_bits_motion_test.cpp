@@ -71,7 +71,7 @@ std::vector<float> ride_in_cpp(Displacement& displaced) {
                                      Eigen::Map<const Vec3<double>>(kPush).cast<float>()));
     }
     if (frame > kPushedAt) {
-      EXPECT_TRUE(hero.lend_hand());
+      EXPECT_TRUE(hero.give_hand());
     }
     if (frame == kLedBackAt) {
       EXPECT_TRUE(hero.come_back());
@@ -115,7 +115,7 @@ TEST(CInterfaceRides, GoTheWayOfTheSameRunInCpp) {
       EXPECT_EQ(sinew_character_apply_impulse(scene.hero, scene.chest, kOnChest, kPush), SINEW_OK);
     }
     if (frame > kPushedAt) {
-      EXPECT_EQ(sinew_character_lend_hand(scene.hero), SINEW_OK) << sinew_last_reason();
+      EXPECT_EQ(sinew_character_give_hand(scene.hero), SINEW_OK) << sinew_last_reason();
     }
     if (frame == kLedBackAt) {
       EXPECT_EQ(sinew_character_come_back(scene.hero), SINEW_OK) << sinew_last_reason();
@@ -142,7 +142,7 @@ TEST(CInterfaceRides, WhatCannotBeMeantIsRefused) {
   EXPECT_EQ(sinew_character_ride(scene.hero, nowhere), SINEW_NOT_FINITE);
   expect_refused(sinew_character_ride(scene.hero, nullptr), SINEW_INVALID_ARGUMENT, "null");
   expect_refused(sinew_character_come_back(scene.world), SINEW_BAD_HANDLE, "another kind");
-  expect_refused(sinew_character_lend_hand(scene.world), SINEW_BAD_HANDLE, "another kind");
+  expect_refused(sinew_character_give_hand(scene.world), SINEW_BAD_HANDLE, "another kind");
 }
 
 // ---- What was set is read again ----

@@ -304,7 +304,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
                 : Vec3<double>::Zero();
   root_before_ = is.root.rotation;
   const bool has_plan = report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep;
-  if (last_step_.root_unknown && clip_walks() && !has_plan) (void)character.lend_hand();
+  if (last_step_.root_unknown && clip_walks() && !has_plan) (void)character.give_hand();
   if (report_.state == BehaviourState::kClip) {
     // Who is back in a walk, or sets off, is led: no ground gives all that the way there asks for.
     if (fade_.running() && fades_root_ && clip_walks()) (void)character.come_back();
@@ -322,7 +322,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     if (!last_step_.root_unknown) return give_up(character);
     if (report_.time < settings_.reaction) return;
     if (report_.time - h < settings_.reaction)  // the first time
-      (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
+      help_trunk(character);
     if (clip_walks()) return begin_walk(character, world, jets, h);
     if (!flies()) begin_plan(is, jets);
   }
@@ -330,7 +330,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   if (landing_ == Landing::kInAir) land(is, jets);
   if (landing_ == Landing::kLanded) end_step(is, jets);  // its feet stand where they came down
   if (landing_ == Landing::kLands) give_in(is, jets[0]);
-  if (walks_ && clip_velocity_.norm() < kStops * pace_) stop_walking(is, jets);
+  if (walks_ && clip_velocity_.norm() < kStops * pace_) stop_walking(character, is, jets);
   if (walks_) return walk_on(character, world, jets[0], h);
   if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time) end_step(is, jets);
   const Vec2 off = from_above(is.mass.place) - plan_.place,
@@ -341,6 +341,12 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   }
   if (report_.state == BehaviourState::kBalance) keep_balance(character, is);
   if (report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep) move_plan(h);
+}
+
+/// The hand of who balances: it may keep the trunk up.
+template <class T>
+void Behaviour<T>::help_trunk(Character<T>& character) const {
+  (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
 }
 
 /// While both feet stand: a step if pressing does not reach, and else back to the animation.
@@ -470,8 +476,10 @@ void Behaviour<T>::lift(int foot, const Transform<double>& from, const MeasuredB
 
 /// Its animation stops while it catches itself: it balances from here on, over the foot that stands.
 template <class T>
-void Behaviour<T>::stop_walking(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
+void Behaviour<T>::stop_walking(Character<T>& character, const MeasuredBody& is,
+                                std::span<const JointJet<T>> jets) {
   walks_ = false;
+  help_trunk(character);
   begin_plan(is, jets);
   const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
   const bool lifted = is.foot[swings].translation.z() > is.foot[stands].translation.z() + kLifted * unit_;

@@ -203,7 +203,8 @@ class Behaviour {
   void choose_support(const MeasuredBody& is);
   void begin_step(const MeasuredBody& is);
   void lift(int foot, const Transform<double>& from, const MeasuredBody& is);
-  void stop_walking(const MeasuredBody& is, std::span<const JointJet<T>> jets);
+  void help_trunk(Character<T>& character) const;
+  void stop_walking(Character<T>& character, const MeasuredBody& is, std::span<const JointJet<T>> jets);
   void put_back(const MeasuredBody& is);
   int misplaced() const;
   Displacement to_feet() const;

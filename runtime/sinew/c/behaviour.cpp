@@ -52,6 +52,7 @@ constexpr auto kSettings = [](auto& c, auto& s, auto&& f) {
   f("rise_force must be 0 to 1e9 N", c.rise_force, s.rise_force, 0, 1e9);
   f("rise_torque must be 0 to 1e9 N m", c.rise_torque, s.rise_torque, 0, 1e9);
   f("walk_torque must be 0 to 1e9 N m", c.walk_torque, s.walk_torque, 0, 1e9);
+  f("walk_force must be 0 to 1e9 N", c.walk_force, s.walk_force, 0, 1e9);
 };
 
 /// act(OwnedBehaviour&, character) of a character that has one. `breaks`: as of in_world.

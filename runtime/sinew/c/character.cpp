@@ -310,8 +310,8 @@ sinew_status sinew_character_come_back(sinew_character character) {
   return change(character, [](Character<float> c) { return c.come_back(); });
 }
 
-sinew_status sinew_character_lend_hand(sinew_character character) {
-  return change(character, [](Character<float> c) { return c.lend_hand(); });
+sinew_status sinew_character_give_hand(sinew_character character) {
+  return change(character, [](Character<float> c) { return c.give_hand(); });
 }
 
 sinew_status sinew_character_apply_impulse(sinew_character character, int32_t joint, const double* point,

@@ -55,6 +55,7 @@ typedef struct sinew_behaviour_settings {
   double rise_force;           ///< N of a human, of help while it rises
   double rise_torque;          ///< N m of a human, likewise
   double walk_torque;          ///< N m of a human, of help while steps of a walk catch it
+  double walk_force;           ///< N of a human, likewise; beside it what its animation asks of no floor
 } sinew_behaviour_settings;
 
 /// How a character keeps its balance now.

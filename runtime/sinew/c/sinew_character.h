@@ -216,7 +216,7 @@ SINEW_API sinew_status sinew_character_ride(sinew_character character, const dou
 SINEW_API sinew_status sinew_character_come_back(sinew_character character);
 /// In the next step a grounded root that is free may be given, besides its help, as much as its target asks
 /// of no floor at all, as a run does that pushes off before its feet are down. Metered as help.
-SINEW_API sinew_status sinew_character_lend_hand(sinew_character character);
+SINEW_API sinew_status sinew_character_give_hand(sinew_character character);
 /// A hit: impulse [3] (N s, world) at a world point [3] on a joint's body, at the beginning of the next step.
 SINEW_API sinew_status sinew_character_apply_impulse(sinew_character character, int32_t joint,
                                                      const double point[3], const double impulse[3]);

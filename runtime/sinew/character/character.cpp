@@ -271,9 +271,9 @@ Status Character<T>::come_back() {
 }
 
 template <class T>
-Status Character<T>::lend_hand() {
+Status Character<T>::give_hand() {
   if (!state_) return nobody();
-  state_->grounding.lends = true;
+  state_->grounding.has_hand = true;
   return {};
 }
 

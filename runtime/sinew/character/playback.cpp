@@ -39,7 +39,7 @@ Standing<T> standing_of(const CharacterState<T>& s, const CheckContext<T>& c) {
           T(world.ground_friction),
           s.grounded() ? T(s.total_mass * world.gravity.norm()) : T(0),
           c.ground,
-          s.grounding.lent ? &s.grounding.hand : nullptr};
+          s.grounding.by_hand ? &s.grounding.hand : nullptr};
 }
 
 /// What the muscles would have to give, with nothing that acts from outside left out.
@@ -144,7 +144,7 @@ bool is_beyond_its_help(const CharacterState<T>& s) {
   const Grounding<T>& g = s.grounding;
   const auto exceeds = [&](int first, T hand) {
     const T most =
-        T(s.help_at_most(first == 0) * s.settings.strength) + (g.lent ? T(kOfTheHand) * hand : T(0));
+        T(s.help_at_most(first == 0) * s.settings.strength) + (g.by_hand ? T(kOfTheHand) * hand : T(0));
     return std::any_of(s.problem.gradient.begin() + first, s.problem.gradient.begin() + first + 3,
                        [&](T asked) { return std::abs(asked) > most; });
   };
@@ -208,11 +208,11 @@ void note_level(CharacterState<T>& s, const CheckContext<T>& c) {
 template <class T, class Ask>
 bool is_borne(CharacterState<T>& s, const CheckContext<T>& c, const Ask& ask) {
   Grounding<T>& g = s.grounding;
-  g.lent = false;
+  g.by_hand = false;
   if (!ask()) return false;
-  if (!s.may_be_lent_a_hand() || !is_beyond_its_help(s)) return true;
+  if (!s.may_have_a_hand() || !is_beyond_its_help(s)) return true;
   g.hand = beyond_any_floor(s, c);
-  g.lent = true;
+  g.by_hand = true;
   if (!ask() || is_beyond_its_help(s)) return false;
   s.set_leads(true);
   return true;
@@ -233,7 +233,7 @@ bool stands(const CharacterState<T>& s, const WorldSettings& world, const StepPl
 
 template <class T>
 bool may_be_led(const CharacterState<T>& s) {
-  return s.may_be_lent_a_hand() && !s.deviation[0].released && has_plain_check(s);
+  return s.may_have_a_hand() && !s.deviation[0].released && has_plain_check(s);
 }
 
 template <class T>
@@ -246,11 +246,11 @@ void lead_root(CharacterState<T>& s, const CheckContext<T>& context) {
     note_level(s, context);
     s.set_leads(bears_with_all_its_strength(s, context));
   }
-  s.grounding.lent = false;  // what it takes, the solve finds
+  s.grounding.by_hand = false;  // what it takes, the solve finds
 }
 
 template <class T>
-void lend_hand(CharacterState<T>& s, const CheckContext<T>& context) {
+void give_hand(CharacterState<T>& s, const CheckContext<T>& context) {
   if (!s.grounded() || !s.floats || s.passive()) return;
   s.grounding.hand = beyond_any_floor(s, context);
   s.refresh_limits();
@@ -326,7 +326,7 @@ bool play_checked(CharacterState<T>& s, const WorldSettings& world, T h) {
 template <class T>
 void report_help(CharacterState<T>& s) {
   if (!s.grounded() || !s.floats) return;
-  const bool apart = s.grounding.lent;  // the check has taken it off before
+  const bool apart = s.grounding.by_hand;  // the check has taken it off before
   const auto size = [&](int first) {
     Vec3<double> sum = Vec3<double>::Zero();
     for (int k = 0; k < 3; ++k)

@@ -45,10 +45,10 @@ bool may_be_led(const CharacterState<T>& state);
 template <class T>
 void lead_root(CharacterState<T>& state, const CheckContext<T>& context);
 
-/// Before a solve, of whom his host lends a hand: what his target asks of no floor that there could be, his
+/// Before a solve, of whom his host gives a hand: what his target asks of no floor that there could be, his
 /// help may be more by. O(points).
 template <class T>
-void lend_hand(CharacterState<T>& state, const CheckContext<T>& context);
+void give_hand(CharacterState<T>& state, const CheckContext<T>& context);
 
 /// Before a solve of a step of h seconds, of muscles with a tone: what the animation asks of each by itself,
 /// with the ground's share; and which are to give way to pushes and effects. Ends a return. O(bodies).
@@ -78,7 +78,7 @@ void synchronise(CharacterState<T>& state, std::span<JointJet<T>> jets);
   prefix bool play_checked<T>(CharacterState<T>&, const WorldSettings&, T);                 \
   prefix bool may_be_led<T>(const CharacterState<T>&);                                      \
   prefix void lead_root<T>(CharacterState<T>&, const CheckContext<T>&);                     \
-  prefix void lend_hand<T>(CharacterState<T>&, const CheckContext<T>&);                     \
+  prefix void give_hand<T>(CharacterState<T>&, const CheckContext<T>&);                     \
   prefix void begin_tone<T>(CharacterState<T>&, T, const CheckContext<T>&);                 \
   prefix void report_help<T>(CharacterState<T>&);                                           \
   prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                       \

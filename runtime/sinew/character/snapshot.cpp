@@ -320,7 +320,7 @@ void visit_inputs(CharacterState<T>& s, ByteStream& stream) {
   s.own_last_target();
   stream.flag("comes back", s.grounding.comes_back);
   stream.flag("rides", s.grounding.rides);
-  stream.flag("is lent a hand", s.grounding.lends);
+  stream.flag("has a hand", s.grounding.has_hand);
   for (JointJet<T>& jet : s.target) {
     stream.rotation("target rotation", jet.rotation);
     stream.vector("target angular velocity", jet.omega);

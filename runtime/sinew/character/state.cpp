@@ -230,8 +230,8 @@ void CharacterState<T>::refresh_limits() {
         minus = plus = assisted ? T(k < 3 ? settings.root_force : settings.root_torque) : T(0);
         if (grounded()) {
           const Vec3<T>& hand = k < 3 ? grounding.hand.force : grounding.hand.moment;
-          const double lent = grounding.lends ? double(hand.norm()) : 0;
-          minus = plus = scaled(help_at_most(k < 3) + lent, T(settings.strength));
+          const double given = grounding.has_hand ? double(hand.norm()) : 0;
+          minus = plus = scaled(help_at_most(k < 3) + given, T(settings.strength));
         }
         if (grounded() && grounding.leads) minus = plus = std::numeric_limits<T>::infinity();
       }

@@ -79,10 +79,10 @@ struct Grounding {
   RootWrench<T> hand;  ///< in this step: what no floor could give to what its animation does
   /// m, of what its animation last stood on, but for `by`.
   double level = std::numeric_limits<double>::max();
-  bool lent = false;        ///< whether that is left to an invisible hand
+  bool by_hand = false;     ///< whether that is left to an invisible hand
   bool leads = false;       ///< its root is borne where the animation has it, in this step
   bool comes_back = false;  ///< Character::come_back() in this step
-  bool lends = false;       ///< Character::lend_hand() in this step
+  bool has_hand = false;    ///< Character::give_hand() in this step
   bool rides = false;       ///< Character::ride() in this step
   bool returns = false;     ///< next to its animation, where it may be played if ground and muscles can do it
 };
@@ -312,7 +312,7 @@ struct CharacterState {
   }
   bool grounded() const { return settings.root == RootDrive::kGrounded && !is_prop; }
   /// Whether it has only the ground, and the help that the settings tell.
-  bool may_be_lent_a_hand() const {
+  bool may_have_a_hand() const {
     return grounded() && floats && grounding.help_force < 0 && grounding.help_torque < 0;
   }
   /// See Grounding::leads. Limits are made anew where that changes.

@@ -270,7 +270,7 @@ class Character {
   /// In the next step a grounded root that is free may be given, besides its help, as much as its target asks
   /// of no floor at all: a run is at fault itself where it pushes off before its feet are down, and who was
   /// pushed while he runs would fall from that. Metered as help.
-  Status lend_hand();
+  Status give_hand();
   /// What may hold a grounded root besides the ground from now on, N and N·m; negative: as in its settings.
   Status set_help(double force, double torque);
   /// How much work it may get from the next step on. Refuses what validate() does; `detail` stays then.

@@ -215,8 +215,8 @@ template <class T>
 void World<T>::Impl::begin_solve(CharacterState<T>& s, Worker& worker) {
   const bool toned = s.problem.law.present.tone && !s.passive();
   s.set_leads(false);
-  s.grounding.lent = false;
-  if (s.grounding.lends) lend_hand(s, context_of_check(s, worker, nullptr));
+  s.grounding.by_hand = false;
+  if (s.grounding.has_hand) give_hand(s, context_of_check(s, worker, nullptr));
   if (!toned && !may_be_led(s)) return;
   const CheckContext<T> context = context_of_check(s, worker, ground_near(s, worker));
   if (toned) begin_tone(s, h, context);
@@ -333,7 +333,7 @@ void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const
     s->forces.clear();
     s->target_stands = true;
     s->grounding.comes_back = s->grounding.rides = false;
-    if (std::exchange(s->grounding.lends, false)) s->refresh_limits();
+    if (std::exchange(s->grounding.has_hand, false)) s->refresh_limits();
     s->report.carried = s->carried;
   }
 }

@@ -139,9 +139,9 @@ class Character(_Affected):
         """A grounded root that moves nearly as its animation wants it is led back onto it."""
         self._call(lib.sinew_character_come_back)
 
-    def lend_hand(self):
+    def give_hand(self):
         """In the next step a free root may be given, besides its help, what its target asks of no floor at all."""
-        self._call(lib.sinew_character_lend_hand)
+        self._call(lib.sinew_character_give_hand)
 
     @property
     def ground(self):
