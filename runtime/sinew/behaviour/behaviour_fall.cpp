@@ -121,7 +121,7 @@ void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jet
   spin_.setZero();
   root_before_ = is.root.rotation;
   measured_ = true;
-  (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
+  help_trunk(character);
   begin_plan(is, jets);
   move_plan(h);
   write_stance(jets, h);
