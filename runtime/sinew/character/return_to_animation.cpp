@@ -229,7 +229,7 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
   const T target = below_floor<T>(s, p.target, ground),
           clip = s.calm ? target : below_floor<T>(s, s.wanted, ground);
   const T deeper = target - std::min(clip, pressed_by_clip(s));
-  p.target[0].translation.z() += std::max(deeper, T(0));
+  p.target[0].translation.z() += (T(1) - decay) * std::max(deeper, T(0));
 }
 
 template <class T>
