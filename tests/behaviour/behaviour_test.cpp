@@ -97,14 +97,17 @@ struct Walking : Pushed {
   Behaviour<float> behaviour;
   bool fell = false;
   double phases = 0.14;  ///< s, from one to the next
+  double helped = 0;     ///< N, at most, while its steps caught it
 
-  explicit Walking(double hz = 60, const char* gait = "walk")
-      : Pushed(gait), behaviour(asset.skeleton, {}, status) {
+  explicit Walking(double hz = 60, const char* gait = "walk", const BehaviourSettings& settings = {})
+      : Pushed(gait), behaviour(asset.skeleton, settings, status) {
     h = float(1 / hz);
     behave = [this](std::span<JointJet<float>> wanted) {
       EXPECT_TRUE(behaviour.update(character(), wanted, h));
       for (const BehaviourEvent& event : behaviour.events())
         fell |= event.kind == BehaviourEventKind::kFallen;
+      if (behaviour.state() == BehaviourState::kStep)
+        helped = std::max(helped, double(character().report().help_force));
     };
   }
   /// Whether it walks on, as its clip does, so many seconds later.
@@ -394,6 +397,20 @@ void expect_caught(const char* gait, double apart, std::initializer_list<Caught>
     GTEST_LOG_(INFO) << impulse << " N s: " << caught << " of 32 are caught at " << hz << " Hz";
     if (asked) continue;  // that is for the table of figures
     EXPECT_GE(caught, most - 2);
+  }
+}
+
+/// His walk by itself asks for next to nothing.
+TEST(Behaviour, WhoWalksIsHelpedByATenthOfHisWeight) {
+  for (const double allowed : {75.0, 0.0}) {
+    double helped = 0;
+    for (const double direction : {0.0, kLeft, kBack, -kLeft})
+      for (int phase = 0; phase < 8; ++phase) {
+        Walking body(60, "walk", {.walk_force = allowed});
+        (void)body.walks_on(20, direction, phase, 1);
+        helped = std::max(helped, body.helped);
+      }
+    EXPECT_LT(helped, std::sqrt(3) * allowed + 30) << "N, in all directions together";
   }
 }
 
