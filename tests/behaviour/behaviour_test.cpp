@@ -415,11 +415,11 @@ TEST(Behaviour, WhoWalksIsHelpedByATenthOfHisWeight) {
 }
 
 TEST(Behaviour, WhoWalksCatchesItselfByItsNextSteps) {
-  expect_caught("walk", 0.14, {{10, 32}, {20, 31}, {30, 22}, {45, 16}});
+  expect_caught("walk", 0.14, {{10, 32}, {20, 32}, {30, 31}, {45, 21}});
 }
 
 TEST(Behaviour, WhoRunsCatchesItselfByItsNextSteps) {
-  expect_caught("run", 0.7 / 8, {{10, 32}, {20, 30}, {30, 28}, {45, 22}});
+  expect_caught("run", 0.7 / 8, {{10, 28}, {20, 25}, {30, 22}, {45, 14}});
 }
 
 TEST(Behaviour, WhoRunsIsOnItsAnimationAgain) {
