@@ -280,6 +280,7 @@ class Behaviour {
   double lands_in_ = 0;                            ///< s, in which it lands, sooner than its animation's
   bool early_ = false;                             ///< the foot that stands has, and its animation's not yet
   Vec2 lands_ = Vec2::Zero();                      ///< m, where the animation's foot in the air will land
+  bool comes_back_ = false;                        ///< it has asked to be led back to its animation
   double sunk_ = 0;  ///< m, of the animation, since something last bore the body
   double pace_ = 0;  ///< m/s, of its animation when it was pushed
   Pendulum error_;   ///< what a walker is off its animation

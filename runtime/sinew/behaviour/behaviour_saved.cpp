@@ -125,6 +125,7 @@ void Behaviour<T>::visit(ByteStream& stream) {
   stream.value("time in which it lands", lands_in_);
   stream.flag("landed before its animation's", early_);
   for (int a = 0; a < 2; ++a) stream.value("where its animation's lands", lands_[a]);
+  stream.flag("asked to come back", comes_back_);
   stream.value("animation sunk", sunk_);
   stream.value("ground of the animation", ground_);
   visit_pendulum("off the animation", error_, stream);

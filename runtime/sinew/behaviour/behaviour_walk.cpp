@@ -109,7 +109,7 @@ void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world
                               std::span<const JointJet<T>> jets, double h) {
   report_.state = BehaviourState::kStep;
   walks_ = true;
-  early_ = swung_ = false;
+  early_ = swung_ = comes_back_ = false;
   lands_in_ = kOnTime;
   sunk_ = 0;
   sets_off_ = 0;
@@ -168,7 +168,7 @@ double Behaviour<T>::beyond_any_floor() const {
 template <class T>
 void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, const JointJet<T>& root,
                            double h) {
-  if (!last_step_.root_unknown) return return_to_clip(character);
+  if (!last_step_.root_unknown && comes_back_) return return_to_clip(character);
   const auto stands = static_cast<std::size_t>(stance_);
   const bool other_stands =
       speed_of(clip_foot_motion_[1 - stands]) < kChanges * speed_of(clip_foot_motion_[stands]);
@@ -195,9 +195,10 @@ void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, c
   (void)character.set_help(weight_ * settings_.walk_force + beyond_any_floor(),
                            weight_ * unit_ * settings_.walk_torque);
   const double late = 1 + kLater * std::max(report_.steps - 2, 0);
-  if (report_.steps > 0 && last_step_.ground.force > 0 && error_.place.norm() < late * kNearly * unit_ &&
-      error_.velocity.norm() < late * std::max(kNearlySpeed * time, kNearlyPace * clip_velocity_.norm()))
-    (void)character.come_back();
+  comes_back_ =
+      report_.steps > 0 && last_step_.ground.force > 0 && error_.place.norm() < late * kNearly * unit_ &&
+      error_.velocity.norm() < late * std::max(kNearlySpeed * time, kNearlyPace * clip_velocity_.norm());
+  if (comes_back_) (void)character.come_back();
   const Vec2 capture = error_.capture_point(frequency_);
   Vec2 pressed = 2 * capture;
   if (const double far = pressed.norm(); far > kPresses * unit_) pressed *= kPresses * unit_ / far;
