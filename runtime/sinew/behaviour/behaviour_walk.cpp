@@ -24,7 +24,7 @@ constexpr double kCrosses = 0.15;                   ///< m, that a foot may land
 constexpr double kSoonest = 0.05;                   ///< s, in which a foot can land
 constexpr int kMoments = 8;                         ///< at which it might
 constexpr double kMisses = 0.02;                    ///< m, that make another one worth it
-constexpr double kShares = 3, kQuickest = 0.04;     ///< of that time, s: in which it goes elsewhere
+constexpr double kShares = 3, kQuickest = 0.06;     ///< of that time, s: in which it goes elsewhere
 constexpr double kClears = 0.04, kLifts = 0.04;     ///< m and s: by and in which it is lifted, not to stumble
 constexpr double kYields = 0.08;     ///< s, in which a foot is asked to be where it came to stand
 constexpr double kObserved = 0.4;    ///< s, in which what it plans comes to what it does

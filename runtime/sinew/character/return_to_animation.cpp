@@ -229,7 +229,8 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
   const T target = below_floor<T>(s, p.target, ground),
           clip = s.calm ? target : below_floor<T>(s, s.wanted, ground);
   const T deeper = target - std::min(clip, pressed_by_clip(s));
-  p.target[0].translation.z() += (T(1) - decay) * std::max(deeper, T(0));
+  const T share = s.grounded() ? T(1) - decay : T(1);  // no help of his drives him there: he would leap
+  p.target[0].translation.z() += share * std::max(deeper, T(0));
 }
 
 template <class T>

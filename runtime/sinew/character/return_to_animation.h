@@ -24,9 +24,10 @@ T height_of_floor(const WorldSettings& world, double origin_height) {
 /// offset from the animation; and no faster than the muscle can stop again with a third of its strength, or a
 /// return time far below the step would fling the joint across. It leads no joint further beyond its limits
 /// than it is. A muscle with a tone needs none: its target is the animation. An assisted root goes over the
-/// floor: as fast as it returns it is raised by what the animation, beyond kPressedByClips, and the joints'
-/// ways back would take feet into it, or it would press them there for good. `ground` is the floor's height
-/// from the common origin (m), −∞ without one. `problem.kinematics` must be those at `problem.start`.
+/// floor: it is raised by what the animation, beyond kPressedByClips, and the joints' ways back would take
+/// feet into it, or it would press them there for good; a grounded one as fast as it returns. `ground` is the
+/// floor's height from the common origin (m), −∞ without one. `problem.kinematics` must be those at
+/// `problem.start`.
 template <class T>
 void choose_targets(CharacterState<T>& state, T return_time, T ground, T h);
 
