@@ -236,6 +236,7 @@ class Behaviour {
   Vec2 clip_ankle_now(std::size_t side, double h) const;
   void write_walk(std::span<JointJet<T>> jets, double h);
   void fade(std::span<JointJet<T>> jets, T h);
+  void calm_legs(std::span<JointJet<T>> jets, T h) const;
   void place_feet(std::span<JointJet<T>> jets, T h);
   bool clip_rests(std::size_t side) const;
   double time_to_set_off() const;
