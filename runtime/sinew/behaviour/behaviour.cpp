@@ -214,7 +214,7 @@ void Behaviour<T>::act(Character<T>& character, std::span<JointJet<T>> jets, T h
   else if (report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep)
     write_stance(jets, double(h));
   fade(jets, h);
-  if (asked_) calm_legs(jets, h);
+  if (asked_ && walks_) calm_legs(jets, h);
   std::copy(jets.begin(), jets.end(), last_.begin());
   asked_ = true;
 }
