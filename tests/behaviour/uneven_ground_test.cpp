@@ -144,7 +144,7 @@ struct Ledge {
 
 /// His animation goes on at the height of the upper level. The edge is at eight places of a stride.
 TEST(UnevenGround, WhoWalksOffALowStepWalksOnBelow) {
-  for (const auto& [step, most] : {Ledge{0.05, 22}, Ledge{0.1, 8}}) {
+  for (const auto& [step, most] : {Ledge{0.05, 24}, Ledge{0.1, 10}}) {
     int walks_on = 0;
     for (const double hz : {30.0, 60.0, 120.0})
       for (int place = 0; place < 8; ++place) {
