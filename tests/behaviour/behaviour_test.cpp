@@ -422,6 +422,30 @@ TEST(Behaviour, WhoRunsCatchesItselfByItsNextSteps) {
   expect_caught("run", 0.7 / 8, {{10, 28}, {20, 25}, {30, 22}, {45, 14}});
 }
 
+/// A knee that is all but straight passes through any rate, and may not be let go with it.
+TEST(Behaviour, NoLimbOfWhoIsPushedWhileHeRunsIsFlung) {
+  double fastest = 0;  // m/s
+  for (const double impulse : {30.0, 45.0})
+    for (const double direction : {0.0, kLeft, kBack, -kLeft})
+      for (int phase = 0; phase < 8; ++phase) {
+        Walking body(30, "run");
+        body.run(2 + body.phases * phase);
+        const auto behave = body.behave;
+        std::vector<Transform<float>> before(body.character().model().begin(),
+                                             body.character().model().end());
+        body.behave = [&](std::span<JointJet<float>> wanted) {
+          behave(wanted);
+          const std::span<const Transform<float>> now = body.character().model();
+          for (std::size_t i = 0; i < static_cast<std::size_t>(body.asset.skeleton.body_count); ++i)
+            fastest = std::max(fastest, double((now[i].translation - before[i].translation).norm()) * 30);
+          std::copy(now.begin(), now.end(), before.begin());
+        };
+        body.push(impulse, direction);
+        body.run(2);
+      }
+  EXPECT_LT(fastest, 20);
+}
+
 TEST(Behaviour, WhoRunsIsOnItsAnimationAgain) {
   int back = 0;
   for (const double direction : {0.0, kLeft, kBack, -kLeft})
