@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "sinew/character/grounding.h"
-#include "sinew/character/return_to_animation.h"
 #include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/rotation.h"
 
@@ -217,21 +216,6 @@ void Behaviour<T>::act(Character<T>& character, std::span<JointJet<T>> jets, T h
   if (asked_ && walks_) calm_legs(jets, h);
   std::copy(jets.begin(), jets.end(), last_.begin());
   asked_ = true;
-}
-
-/// A knee that is all but straight passes through any rate: as legs go in this frame, where that does not
-/// lead them there. They would arrive with it.
-template <class T>
-void Behaviour<T>::calm_legs(std::span<JointJet<T>> jets, T h) const {
-  for (const FootLeg<T>& leg : body_.legs)
-    for (const int joint : {leg.upper, leg.middle, leg.foot}) {
-      const JointJet<T>& before = last_[static_cast<std::size_t>(joint)];
-      JointJet<T>& now = jets[static_cast<std::size_t>(joint)];
-      const Vec3<T> turned = rotation_log<T>(before.rotation.conjugate() * now.rotation);
-      if (!are_foreign<T>(turned, h * before.omega, h * now.omega)) continue;
-      now.omega = turned / h;
-      now.alpha.setZero();
-    }
 }
 
 /// From one plan's pose into the next. The root is solved for, and is where it is, but for that of who stands

@@ -232,7 +232,7 @@ class Behaviour {
   void change_feet(Character<T>& character, const MeasuredBody& world, double h);
   void move_offset(const MeasuredBody& is, double h);
   void lead_foot(std::size_t side, const Vec2& to, double in, double h);
-  Footfall footfall(const Vec2& ahead, const Vec2& lands, double left) const;
+  Footfall footfall(const Vec2& ahead, const Vec2& lands, double left, double time_of_step) const;
   Vec2 clip_ankle_now(std::size_t side, double h) const;
   void write_walk(std::span<JointJet<T>> jets, double h);
   void fade(std::span<JointJet<T>> jets, T h);
@@ -278,13 +278,13 @@ class Behaviour {
   bool walks_ = false;                             ///< it was pushed while it walked, and walks on
   int stance_ = 0;                                 ///< the foot that stands, of a walker
   bool swung_ = false;                             ///< the other one has left the ground
-  double lands_in_ = 0;                            ///< s, in which it lands, sooner than its animation's
-  bool early_ = false;                             ///< the foot that stands has, and its animation's not yet
-  Vec2 lands_ = Vec2::Zero();                      ///< m, where the animation's foot in the air will land
-  bool comes_back_ = false;                        ///< it has asked to be led back to its animation
-  double sunk_ = 0;  ///< m, of the animation, since something last bore the body
-  double pace_ = 0;  ///< m/s, of its animation when it was pushed
-  Pendulum error_;   ///< what a walker is off its animation
+  double lands_in_ = 0;        ///< s, in which it lands, if sooner than its animation's; else infinite
+  bool early_ = false;         ///< the foot that stands has, and its animation's not yet
+  Vec2 lands_ = Vec2::Zero();  ///< m, where the animation's foot in the air will land
+  bool comes_back_ = false;    ///< it has asked to be led back to its animation
+  double sunk_ = 0;            ///< m, of the animation, since something last bore the body
+  double pace_ = 0;            ///< m/s, of its animation when it was pushed
+  Pendulum error_;             ///< what a walker is off its animation
   /// m, and of its feet.
   std::array<MovingVector<double>, 2> foot_offset_{still<double>(Vec3<double>::Zero()),
                                                    still<double>(Vec3<double>::Zero())};

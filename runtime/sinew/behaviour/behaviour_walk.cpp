@@ -10,6 +10,8 @@
 #include <limits>
 
 #include "sinew/behaviour/behaviour.h"
+#include "sinew/character/grounding.h"
+#include "sinew/character/return_to_animation.h"
 #include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/rotation.h"
 
@@ -34,7 +36,6 @@ constexpr double kSags = 0.02;       ///< m, that it may be lower than that befo
 constexpr double kSameLevel = 5e-3;  ///< m, that ground may be higher or lower than its animation's
 constexpr double kPresses = 0.1;     ///< m, that its feet press elsewhere than its animation's
 constexpr double kReaches = 0.02;    ///< m, that an animation's soles may be over what bears them
-constexpr double kGrip = 0.6;        ///< μ of a floor that no animation may blame
 // What it may be off when it is led back, and more by this share for every step after the second.
 constexpr double kNearly = 0.04, kNearlySpeed = 0.12, kLater = 0.25;  ///< m, m/s
 constexpr double kNearlyPace = 0.1;                                   ///< of its pace: the same of who runs
@@ -141,7 +142,7 @@ void Behaviour<T>::follow_ground(Character<T>& character) {
     const double off = level_ - ground_ - sunk_, fallen = height_.value - sunk_;
     const bool other_level = std::abs(off) > kSameLevel * unit_ && std::abs(fallen) > std::abs(off) / 2 &&
                              (fallen < 0) == (off < 0);
-    down = other_level ? -off - sunk_ : -sunk_;
+    down = -sunk_ - (other_level ? off : 0);
     sunk_ = 0;
   } else if (airborne_ > kAirborne * std::sqrt(unit_)) {
     down = std::max(-height_.value - kSags * unit_, 0.0);
@@ -161,7 +162,7 @@ double Behaviour<T>::beyond_any_floor() const {
   const Vec3<double> force = body_.total_mass * (clip_acceleration_ + Vec3<double>(0, 0, settings_.gravity));
   const double lowest = std::min(body_.lowest_of(0, model_), body_.lowest_of(1, model_));
   if (lowest > ground_ + kReaches * unit_) return force.norm();
-  const double slips = std::max(from_above(force).norm() - kGrip * std::max(force.z(), 0.0), 0.0);
+  const double slips = std::max(from_above(force).norm() - kGoodGrip * std::max(force.z(), 0.0), 0.0);
   return portable::hypot(slips, std::min(force.z(), 0.0));
 }
 
@@ -229,7 +230,8 @@ void Behaviour<T>::lead_foot(std::size_t side, const Vec2& to, double in, double
 /// Where and when the foot in the air lands, of which the animation's lands at `lands` in `left` seconds: by
 /// as much elsewhere as the body will be off when it is down. Where that is out of reach, sooner.
 template <class T>
-Footfall Behaviour<T>::footfall(const Vec2& ahead, const Vec2& lands, double left) const {
+Footfall Behaviour<T>::footfall(const Vec2& ahead, const Vec2& lands, double left,
+                                double time_of_step) const {
   const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
   const Vec2 place = clip_ankle_now(stands, 0), step = lands - place, left_of(-ahead.y(), ahead.x());
   Feet feet{{}, portable::atan2(ahead.y(), ahead.x())};
@@ -239,7 +241,7 @@ Footfall Behaviour<T>::footfall(const Vec2& ahead, const Vec2& lands, double lef
   law.apart = std::min(law.apart, (swings == 0 ? 1 : -1) * step.dot(left_of)) - kCrosses * unit_;
   // Where the capture point of the animation will be then, from its landing place (Hof, "The 'extrapolated
   // center of mass' concept suggests a simple control of balance in walking", 2008).
-  const double grows = portable::exp(frequency_ * step_time(clip_velocity_.norm(), unit_));
+  const double grows = portable::exp(frequency_ * time_of_step);
   const Vec2 beyond = step.dot(ahead) / (grows - 1) * ahead - step.dot(left_of) / (grows + 1) * left_of;
   const Vec2 capture = error_.capture_point(frequency_);
   Footfall best;
@@ -289,7 +291,7 @@ void Behaviour<T>::move_offset(const MeasuredBody& is, double h) {
   swung_ = true;
   const double left = std::clamp(still_to_go / speed, kSoonest, time_of_step);
   lands_ = clip_ankle_now(stands, 0) + way + still_to_go * ahead;
-  const Footfall next = footfall(ahead, lands_, left);
+  const Footfall next = footfall(ahead, lands_, left, time_of_step);
   if (lands_in_ < kOnTime || next.in < left - kSoonest) {
     lands_in_ = std::min(lands_in_ - h, next.in);
     return lead_foot(swings, next.place, std::max(lands_in_, 0.0), h);
@@ -319,6 +321,21 @@ void Behaviour<T>::write_walk(std::span<JointJet<T>> jets, double h) {
   take_feet<T>(body_, shift, turn, feet, jets);
 }
 
+/// A knee that is all but straight passes through any rate: as legs go in this frame, where that does not
+/// lead them there. They would arrive with it.
+template <class T>
+void Behaviour<T>::calm_legs(std::span<JointJet<T>> jets, T h) const {
+  for (const FootLeg<T>& leg : body_.legs)
+    for (const int joint : {leg.upper, leg.middle, leg.foot}) {
+      const JointJet<T>& before = last_[static_cast<std::size_t>(joint)];
+      JointJet<T>& now = jets[static_cast<std::size_t>(joint)];
+      const Vec3<T> turned = rotation_log<T>(before.rotation.conjugate() * now.rotation);
+      if (!are_foreign<T>(turned, h * before.omega, h * now.omega)) continue;
+      now.omega = turned / h;
+      now.alpha.setZero();
+    }
+}
+
 #define SINEW_WALK_INSTANCES(T)                                                                            \
   template Vec2 Behaviour<T>::clip_ankle_now(std::size_t, double) const;                                   \
   template Displacement Behaviour<T>::to_standing_foot(const MeasuredBody&, double) const;                 \
@@ -329,9 +346,10 @@ void Behaviour<T>::write_walk(std::span<JointJet<T>> jets, double h) {
   template double Behaviour<T>::beyond_any_floor() const;                                                  \
   template void Behaviour<T>::follow_ground(Character<T>&);                                                \
   template void Behaviour<T>::lead_foot(std::size_t, const Vec2&, double, double);                         \
-  template Footfall Behaviour<T>::footfall(const Vec2&, const Vec2&, double) const;                        \
+  template Footfall Behaviour<T>::footfall(const Vec2&, const Vec2&, double, double) const;                \
   template void Behaviour<T>::move_offset(const MeasuredBody&, double);                                    \
-  template void Behaviour<T>::write_walk(std::span<JointJet<T>>, double);
+  template void Behaviour<T>::write_walk(std::span<JointJet<T>>, double);                                  \
+  template void Behaviour<T>::calm_legs(std::span<JointJet<T>>, T) const;
 SINEW_WALK_INSTANCES(float)
 SINEW_WALK_INSTANCES(double)
 

@@ -208,29 +208,33 @@ void StandingBody<T>::add_sole(int foot, const Transform<double>& place, Sole& s
 }
 
 template <class T>
+template <class U, class Place>
+double StandingBody<T>::lowest(std::size_t foot, const Place& place_of) const {
+  U low = std::numeric_limits<U>::infinity();
+  for (const SolePoint<T>& p : soles[foot]) low = std::min(low, place_of(p).z());
+  return double(low);
+}
+
+template <class T>
 double StandingBody<T>::lowest_of(std::size_t foot, const Transform<double>& place) const {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const SolePoint<T>& p : soles[foot])
-    lowest = std::min(lowest, (place * Vec3<double>(p.on_foot.template cast<double>())).z());
-  return lowest;
+  return lowest<double>(foot, [&](const SolePoint<T>& p) {
+    return Vec3<double>(place * Vec3<double>(p.on_foot.template cast<double>()));
+  });
 }
 
 template <class T>
 double StandingBody<T>::lowest_of(std::size_t foot, std::span<const Transform<T>> model) const {
-  T lowest = std::numeric_limits<T>::infinity();
-  for (const SolePoint<T>& p : soles[foot])
-    lowest = std::min(lowest, (model[static_cast<std::size_t>(p.joint)] * p.local).z());
-  return double(lowest);
+  return lowest<T>(foot, [&](const SolePoint<T>& p) {
+    return Vec3<T>(model[static_cast<std::size_t>(p.joint)] * p.local);
+  });
 }
 
 template <class T>
 double StandingBody<T>::lowest_of(std::size_t foot, std::span<const MovingTransform<T>> model) const {
-  T lowest = std::numeric_limits<T>::infinity();
-  for (const SolePoint<T>& p : soles[foot]) {
+  return lowest<T>(foot, [&](const SolePoint<T>& p) {
     const MovingTransform<T>& at = model[static_cast<std::size_t>(p.joint)];
-    lowest = std::min(lowest, (at.rotation.value * p.local + value_of(at.translation)).z());
-  }
-  return double(lowest);
+    return Vec3<T>(at.rotation.value * p.local + value_of(at.translation));
+  });
 }
 
 template <class T>

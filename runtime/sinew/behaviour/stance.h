@@ -11,7 +11,7 @@
 
 namespace sinew {
 
-/// Centre of mass and its velocity.
+/// Centre of mass, and how it moves where that is asked for.
 struct MassMotion {
   Vec3<double> place = Vec3<double>::Zero();         ///< m
   Vec3<double> velocity = Vec3<double>::Zero();      ///< m/s
@@ -62,6 +62,10 @@ struct StandingBody {
   double lowest_of(std::size_t foot, std::span<const Transform<T>> model) const;
   /// Likewise.
   double lowest_of(std::size_t foot, std::span<const MovingTransform<T>> model) const;
+
+ private:
+  template <class U, class Place>
+  double lowest(std::size_t foot, const Place& place_of) const;
 };
 
 /// What a stance asks for at an instant.

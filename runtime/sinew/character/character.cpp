@@ -281,8 +281,10 @@ template <class T>
 Status Character<T>::set_help(double force, double torque) {
   if (!state_) return nobody();
   if (std::isnan(force) || std::isnan(torque)) return Status::error(Code::kNotFinite, "help is not a number");
-  state_->grounding.help_force = force;
-  state_->grounding.help_torque = torque;
+  Grounding<T>& grounding = state_->grounding;
+  if (grounding.help_force == force && grounding.help_torque == torque) return {};
+  grounding.help_force = force;
+  grounding.help_torque = torque;
   state_->refresh_limits();
   return {};
 }

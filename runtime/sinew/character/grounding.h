@@ -13,6 +13,7 @@
 namespace sinew {
 
 constexpr double kOffGround = 3e-3;  ///< m of a human, by which soles of a clip may be off its ground
+constexpr double kGoodGrip = 0.6;    ///< μ of a floor that no animation may blame
 
 /// A jet of the animation's root where the character has been displaced to.
 template <class T>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/character/grounding.h"
 #include "sinew/character/return_to_animation.h"
 #include "sinew/character/tone.h"
 #include "sinew/effects/support.h"
@@ -81,7 +82,6 @@ void check_animation(CharacterState<T>& s, const std::vector<JointJet<T>>& targe
                   s.problem.gradient);
 }
 
-constexpr double kGoodGrip = 0.6;   ///< μ of a floor that no animation may blame
 constexpr double kOfTheHand = 0.1;  ///< of the hand, that ground which gives its utmost may miss: it yields
 
 /// What no floor at all could give to what the animation does, N and N·m of the root. Its accelerations alone
