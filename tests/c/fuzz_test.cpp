@@ -341,8 +341,11 @@ class Sequence : FuzzMotion {
     switch (below(10)) {
       case 0:
         return sinew_character_set_strength(someone, real(0, 2));
-      case 1:
+      case 1: {
+        const std::vector<float> shares(128, rarely() ? 2 : real(0, 1));
+        if (below(2) == 0) return sinew_character_set_activation(someone, or_null(shares.data()), index(128));
         return sinew_character_set_joint_strength(someone, index(25), real(0, 2));
+      }
       case 2:
         return sinew_character_set_muscle_strength(someone, index(4), real(0, 2));
       case 3:

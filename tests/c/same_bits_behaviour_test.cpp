@@ -177,6 +177,7 @@ TEST(CInterfaceGetUp, WhoMayNotLiesUntilHeMay) {
   EXPECT_EQ(settings.rise_torque, BehaviourSettings().rise_torque);
   EXPECT_EQ(settings.walk_torque, BehaviourSettings().walk_torque);
   EXPECT_EQ(settings.walk_force, BehaviourSettings().walk_force);
+  EXPECT_EQ(settings.reach_strength, BehaviourSettings().reach_strength);
   settings.get_up = SINEW_GET_UP_WHEN_ALLOWED;
   ASSERT_EQ(sinew_character_add_behaviour(scene.hero, &settings), SINEW_OK) << sinew_last_reason();
   EXPECT_EQ(sinew_character_order(scene.hero, SINEW_BEHAVIOUR_GET_UP), SINEW_INVALID_ARGUMENT)

@@ -86,6 +86,34 @@ TEST(Character, RefusesImpulsesAndStrengthsThatCannotBeMeant) {
   EXPECT_EQ(c.set_strength(14, 1.f).index, 14);
 }
 
+TEST(Character, ActivationMultipliesStrengthsAndRefusesWhatIsNoShare) {
+  Playing<float> scene;
+  Character<float> c = scene.character();
+  scene.step();
+  const std::vector<float> full(c.limit().begin(), c.limit().end());
+  std::vector<float> shares(scene.skeleton.joints.size(), 1.f);
+  shares[3] = 0.25f;
+  ASSERT_TRUE(c.set_strength(0.5f));
+  ASSERT_TRUE(c.set_activation(shares));
+  scene.step();
+  const auto at = [&](int joint) { return static_cast<std::size_t>(c.first_dof(joint)); };
+  EXPECT_FLOAT_EQ(c.limit()[at(3)], 0.125f * full[at(3)]);
+  EXPECT_FLOAT_EQ(c.limit()[at(4)], 0.5f * full[at(4)]);
+  for (const float wrong : {-0.1f, 1.1f, float(kNan)}) {
+    shares[5] = wrong;
+    EXPECT_EQ(c.set_activation(shares).index, 5) << wrong;
+    EXPECT_FALSE(c.set_activation(wrong)) << wrong;
+  }
+  shares.pop_back();
+  EXPECT_EQ(c.set_activation(shares).code, Code::kInvalidArgument);
+  scene.step();
+  EXPECT_FLOAT_EQ(c.limit()[at(3)], 0.125f * full[at(3)]) << "as it was";
+  ASSERT_TRUE(c.set_activation(1));
+  ASSERT_TRUE(c.set_strength(1.f));
+  scene.step();
+  EXPECT_EQ(c.limit()[at(3)], full[at(3)]);
+}
+
 TEST(World, RefusesStepsThatCannotBeTakenAndMovesNothing) {
   Playing<float> scene;
   scene.step();

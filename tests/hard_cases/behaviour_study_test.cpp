@@ -108,6 +108,30 @@ TEST(Aftermath, WhoseRootComesDownFalls) {
             Outcome::kStay);
 }
 
+TEST(LookAtFall, TellsWhenAPelvisTouchesHowHardAndWhenItRests) {
+  constexpr double kDown = 0.5, kSpeed = 3;  // s; m/s, with which it comes down, and stops at once
+  const FallRun run = look_at_fall(acted([&](float t, Model& model) {
+                                     const double left = std::max(kDown - double(t), 0.0);
+                                     model[0].translation.z() = float(std::min(kRoot, 0.1 + kSpeed * left));
+                                     model[0].translation.z() -= t > float(kDown) ? 0.001f : 0.f;
+                                   }),
+                                   0);
+  EXPECT_TRUE(run.fell);
+  EXPECT_NEAR(run.pelvis, kDown, 2 / 60.0);
+  EXPECT_LT(run.hand, 0) << "it has none";
+  EXPECT_LT(run.head, 0);
+  EXPECT_NEAR(run.depth, 0.001, 1e-5);
+  EXPECT_LT(run.rests, 2 / 60.0);
+  const double mass = puppet()->skeleton.total_mass();
+  EXPECT_GT(run.pelvis_force, mass * kSpeed * 60 / 3 / 2) << "a third of it stops within a frame";
+}
+
+TEST(LookAtFall, WhoStandsDoesNotFall) {
+  const FallRun run = look_at_fall(acted([](float, Model&) {}), 0);
+  EXPECT_FALSE(run.fell);
+  EXPECT_EQ(run.rests, 0);
+}
+
 TEST(Aftermath, OffAMotionIsWhatNoMoveOverTheGroundMends) {
   const auto wanted = acted([](float, Model&) {});
   const Quat<float> turn(Eigen::AngleAxisf(0.7f, Vec3<float>::UnitZ()));
@@ -147,6 +171,7 @@ const BehaviourResult& small_study() {
     plan.sweeps = {{Role::kChest, 60, 2, {15, 50, 120}, 1}};
     plan.phases = 1;
     plan.hits = {{5, 20, 40}, {60}};
+    plan.falls = {{100}, {60}, 1};
     plan.get_ups = {1, 1};
     BehaviourResult made;
     if (const convert::Error error = run_behaviour(plan, nullptr, made)) ADD_FAILURE() << error.message;
@@ -163,7 +188,7 @@ TEST(BehaviourStudy, JsonIsAsItIsDescribed) {
     return names;
   };
   using Names = std::set<std::string>;
-  EXPECT_EQ(keys(json), (Names{"get_ups", "hits", "push_map", "scenes"}));
+  EXPECT_EQ(keys(json), (Names{"falls", "get_ups", "hits", "push_map", "scenes"}));
   ASSERT_EQ(json["push_map"].size(), 2u);
   for (const auto& d : json["push_map"])
     EXPECT_EQ(keys(d), (Names{"scene", "direction", "stay_step_50", "step_fall_50", "human_stay_step",
@@ -174,7 +199,12 @@ TEST(BehaviourStudy, JsonIsAsItIsDescribed) {
                                 "unknowns_after_1_s"}));
   ASSERT_EQ(json["get_ups"].size(), 3u);
   for (const auto& get_up : json["get_ups"]) EXPECT_TRUE(get_up.contains("scene")) << get_up;
-  ASSERT_EQ(json["scenes"].size(), 10u);
+  ASSERT_EQ(json["falls"].size(), 8u + 2);
+  for (const auto& fall : json["falls"])
+    EXPECT_EQ(keys(fall),
+              (Names{"scene", "fell", "hand_s", "pelvis_s", "head_s", "wrist_speed", "head_acceleration",
+                     "head_speed", "pelvis_force", "joint_speed", "rests_s", "depth"}));
+  ASSERT_EQ(json["scenes"].size(), 11u);
   for (const auto& scene : json["scenes"]) {
     EXPECT_EQ(keys(scene), (Names{"name", "passed", "criteria"}));
     EXPECT_FALSE(scene["criteria"].empty()) << scene["name"];
@@ -225,7 +255,8 @@ TEST_P(BehaviourScenes, PassOrAreKnownToFail) {
 
 INSTANTIATE_TEST_SUITE_P(All, BehaviourScenes,
                          testing::Values("stand_60_s", "walk_60_s", "push_stand_chest_60_Hz",
-                                         "push_while_walking", "hits_relaxed", "hits_alert", "hits_braced"),
+                                         "push_while_walking", "falls_60_Hz", "hits_relaxed", "hits_alert",
+                                         "hits_braced"),
                          [](const auto& of) { return std::string(of.param); });
 
 }  // namespace

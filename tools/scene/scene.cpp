@@ -165,14 +165,16 @@ void read_behaviour(const Reader& in, SceneCharacter& c) {
     if (value.get<bool>()) c.behaviour.emplace();
     return;
   }
-  const Reader of(in.at("behaviour"), in.inside("behaviour"),
-                  {"reaction", "most_steps", "help_torque", "get_up", "rise_force", "rise_torque"});
+  const Reader of(
+      in.at("behaviour"), in.inside("behaviour"),
+      {"reaction", "most_steps", "help_torque", "get_up", "rise_force", "rise_torque", "reach_strength"});
   BehaviourSettings settings;
   settings.reaction = of.time("reaction", settings.reaction);
   settings.most_steps = static_cast<int>(of.time("most_steps", settings.most_steps));
   settings.help_torque = of.time("help_torque", settings.help_torque);
   settings.rise_force = of.time("rise_force", settings.rise_force);
   settings.rise_torque = of.time("rise_torque", settings.rise_torque);
+  settings.reach_strength = of.time("reach_strength", settings.reach_strength);
   settings.get_up = of.flag("get_up", true) ? GetUpPolicy::kAuto : GetUpPolicy::kNever;
   c.behaviour = settings;
 }

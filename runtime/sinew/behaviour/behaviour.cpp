@@ -55,7 +55,10 @@ Displacement way_of(const CarriedFrame& now, const CarriedFrame& next, double h)
 template <class T>
 Behaviour<T>::Behaviour(const Skeleton& skeleton, const BehaviourSettings& settings, Status& status)
     : settings_(settings) {
-  status = body_.find(skeleton);
+  for (const double share : {settings.fallen_strength, settings.reach_strength})
+    if (!(share >= 0 && share <= 1))
+      status = Status::error(Code::kInvalidArgument, "fallen_strength and reach_strength must be 0 to 1");
+  if (status) status = body_.find(skeleton);
   if (!status) return;
   unit_ = std::max(body_.height / kHipHeight, 1e-6);
   weight_ = body_.total_mass / kMass;
@@ -63,6 +66,7 @@ Behaviour<T>::Behaviour(const Skeleton& skeleton, const BehaviourSettings& setti
   for (double* length : {&law_.margin, &law_.longest_step, &law_.apart, &law_.lift}) *length *= unit_;
   law_.step_time *= std::sqrt(unit_);
   law_.gain /= std::sqrt(unit_);
+  reach_.prepare(skeleton, settings_, unit_);
   const std::size_t joints = skeleton.joints.size();
   last_.resize(joints);
   model_.resize(joints);
@@ -311,7 +315,6 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     if (fade_.running() && fades_root_ && clip_walks()) (void)character.come_back();
     if (!last_step_.root_unknown || !(flies() || is_pushed(is, h))) return;
     report_ = {.state = BehaviourState::kPassive};
-    strength_ = double(character.strength());
     return;
   }
   const Quat<double> tilt = is.root.rotation * jets[0].rotation.template cast<double>().conjugate();

@@ -23,6 +23,7 @@
 #include "sinew/behaviour/balance_plan.h"
 #include "sinew/behaviour/behaviour_settings.h"
 #include "sinew/behaviour/get_up.h"
+#include "sinew/behaviour/protective_reach.h"
 #include "sinew/behaviour/stance.h"
 #include "sinew/character/world.h"
 
@@ -132,7 +133,7 @@ struct LastStep {
 template <class T>
 class Behaviour {
  public:
-  /// Set-up: finds legs, soles and masses. Errors name what is missing: roles of thigh, shin, foot and toes.
+  /// Set-up: finds legs, soles and masses. Errors name what is missing, roles of thigh, shin, foot and toes, or what is wrong in the settings.
   Behaviour(const Skeleton& skeleton, const BehaviourSettings& settings, Status& status);
   Behaviour(const Behaviour&) = delete;
   Behaviour& operator=(const Behaviour&) = delete;
@@ -314,8 +315,8 @@ class Behaviour {
   Vec3<double> forward_ = Vec3<double>::UnitX();  ///< of the body, root axes
   Quat<double> root_before_ = Quat<double>::Identity();
   bool measured_ = false;  ///< `root_before_` is that of the last frame
-  double strength_ = 1;    ///< before it fell
   double rest_ = 0;        ///< s
+  ProtectiveReach<T> reach_;
   GetUp<T> get_up_;
   bool allowed_ = false;  ///< to get up
   bool knocked_ = false;  ///< since the last update

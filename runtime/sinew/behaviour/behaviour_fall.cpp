@@ -28,6 +28,7 @@ void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double 
   report_.fell_beyond = reason == BehaviourReason::kBeyondReach ? number : 0;
   report_.time = 0;
   rest_ = 0;
+  reach_.begin();
   (void)character.set_root_drive(RootDrive::kFree);
   if (reason != BehaviourReason::kAsked) tell(BehaviourEventKind::kFallen, reason, number);
 }
@@ -45,11 +46,17 @@ bool Behaviour<T>::lies(const Character<T>& character, double h) {
   return rest_ > kLie * time || report_.time > kNeverStill * time;
 }
 
+/// Arms reach for the ground; in the end all muscles have let go.
 template <class T>
 void Behaviour<T>::let_go(Character<T>& character, double h) {
-  const double share = std::min(report_.time / std::max(settings_.let_go, 1e-9), 1.0);
-  if (report_.time < settings_.let_go + 2 * h)
-    (void)character.set_strength(T(strength_ + share * (settings_.fallen_strength - strength_)));
+  const MeasuredBody is = measure(character);
+  FallingBody body;
+  body.mass = is.mass;
+  body.spin = character.displacement().turn() * spin_;
+  body.forward = is.root.rotation * forward_;
+  body.feet = from_above(is.foot[0].translation + is.foot[1].translation) / 2;
+  body.ground = level_ + character.displacement().z;
+  reach_.update(character, body, last_, h);
 }
 
 template <class T>
@@ -62,9 +69,9 @@ bool Behaviour<T>::may_get_up() const {
 template <class T>
 void Behaviour<T>::lie(Character<T>& character, std::span<JointJet<T>> jets, double h) {
   if (!std::exchange(asked_, true)) std::copy(jets.begin(), jets.end(), last_.begin());
-  let_go(character, h);
   if (report_.state == BehaviourState::kFall && lies(character, h)) report_.state = BehaviourState::kDown;
-  if (report_.state == BehaviourState::kDown && may_get_up() && get_up_.begin(character, strength_, level_)) {
+  let_go(character, h);
+  if (report_.state == BehaviourState::kDown && may_get_up() && get_up_.begin(character, level_)) {
     report_.state = BehaviourState::kGather;
     ++report_.tries;
     tell(BehaviourEventKind::kRising, allowed_ ? BehaviourReason::kAsked : BehaviourReason::kNone);
@@ -147,7 +154,6 @@ Status Behaviour<T>::get_up() {
 
 template <class T>
 void Behaviour<T>::knock_down(Character<T> character) {
-  if (report_.state == BehaviourState::kClip) strength_ = double(character.strength());
   if (fallen()) return;
   report_.tries = 0;
   knocked_ = true;  // the next update tells
@@ -156,7 +162,7 @@ void Behaviour<T>::knock_down(Character<T> character) {
 
 template <class T>
 void Behaviour<T>::stand(Character<T> character) {
-  (void)character.set_strength(T(strength_));
+  (void)character.set_activation(T(1));
   (void)character.set_root_drive(RootDrive::kGrounded);
   (void)character.set_help(-1, -1);
   report_ = {};

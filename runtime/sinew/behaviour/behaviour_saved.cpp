@@ -94,7 +94,6 @@ void GetUp<T>::visit(ByteStream& stream) {
   stream.value("pose to rise from", entry_);
   stream.value("clip to get up by", variant_);
   stream.value("times it gathered", gathers_);
-  stream.value("strength when it stands", strength_);
   stream.value("time of this try", elapsed_);
   stream.value("time it waits", waits_);
   stream.value("off its clip", off_);
@@ -146,7 +145,7 @@ void Behaviour<T>::visit(ByteStream& stream) {
   stream.vector("slope of the ground", normal_);
   stream.value("ground higher than the clip's", higher_);
   stream.flag("root was measured", measured_);
-  stream.value("strength before it fell", strength_);
+  reach_.visit(stream);
   stream.value("time it has lain still", rest_);
   stream.flag("may get up", allowed_);
   stream.flag("knocked down", knocked_);

@@ -69,7 +69,7 @@ void GetUp<T>::look(const Character<T>& character) {
 }
 
 template <class T>
-bool GetUp<T>::begin(Character<T>& character, double strength, double ground) {
+bool GetUp<T>::begin(Character<T>& character, double ground) {
   ground_ = ground;
   look(character);
   GetUpChoice choice = clips_.choose(is_, tried_);
@@ -79,7 +79,6 @@ bool GetUp<T>::begin(Character<T>& character, double strength, double ground) {
   }
   gathers_ = 0;
   elapsed_ = strong_from_ = 0;
-  strength_ = strength;
   (void)character.set_root_drive(RootDrive::kFree);
   return gather_to(character, choice);
 }
@@ -139,8 +138,7 @@ GetUpOutcome GetUp<T>::gather(Character<T>& character, std::span<JointJet<T>> je
   const double before = strong_from_;
   strong_from_ += h / (kStrong * std::sqrt(unit_));
   if (before < 1)
-    (void)character.set_strength(
-        T(strength_ * std::lerp(settings_.fallen_strength, 1.0, smooth(strong_from_))));
+    (void)character.set_activation(T(std::lerp(settings_.fallen_strength, 1.0, smooth(strong_from_))));
   fade_.elapsed += T(h);
   const Fit fit = clips_.fit(entry_, is_);
   off_ = fit.off;
@@ -166,7 +164,7 @@ void GetUp<T>::begin_rise(Character<T>& character) {
   rises_ = true;
   waits_ = 0;
   caught_ = off_;
-  (void)character.set_strength(T(strength_));
+  (void)character.set_activation(T(1));
   if (rolls()) return;  // nothing but the ground
   (void)character.set_root_drive(RootDrive::kGrounded);
   (void)character.set_help(weight_ * settings_.rise_force, weight_ * unit_ * settings_.rise_torque);

@@ -38,9 +38,8 @@ class GetUp {
                double unit, double weight);
   /// Whether there is a clip to get up by.
   bool possible() const { return !clips_.empty(); }
-  /// From where the body lies. `strength`: of its muscles when it stands; `ground`: m, height of what it is
-  /// to stand on. Whether there is a way.
-  bool begin(Character<T>& character, double strength, double ground);
+  /// From where the body lies. `ground`: m, height of what it is to stand on. Whether there is a way.
+  bool begin(Character<T>& character, double ground);
   /// Moves on by h s, and writes what the body is to do.
   GetUpOutcome update(Character<T>& character, std::span<JointJet<T>> jets, double h);
   /// Writes the pose in which its clip ends, at rest, where that was played. After begin(). O(joints).
@@ -72,7 +71,7 @@ class GetUp {
   std::uint32_t tried_ = 0;  ///< variants that failed
   bool rises_ = false;
   int entry_ = -1, variant_ = -1, gathers_ = 0;
-  double strength_ = 1, elapsed_ = 0, waits_ = 0, off_ = 0, strong_from_ = 0;
+  double elapsed_ = 0, waits_ = 0, off_ = 0, strong_from_ = 0;
   double caught_ = 0;   ///< m, that it was off when it began to rise: a limb under the body, that comes free
   Displacement place_;  ///< of the clip
   double ground_ = 0;   ///< m, height of its ground

@@ -45,7 +45,7 @@ constexpr auto kSettings = [](auto& c, auto& s, auto&& f) {
   f("reaction must be 0 to 10 s", c.reaction, s.reaction, 0, 10);
   f("gravity must be 1e-3 to 1e4 m/s2", c.gravity, s.gravity, 1e-3, 1e4);
   f("help_torque must be 0 to 1e9 N m", c.help_torque, s.help_torque, 0, 1e9);
-  f("fallen_strength must be 0 to 1000", c.fallen_strength, s.fallen_strength, 0, 1000);
+  f("fallen_strength must be 0 to 1", c.fallen_strength, s.fallen_strength, 0, 1);
   f("let_go must be 0 to 10 s", c.let_go, s.let_go, 0, 10);
   f("no such policy of getting up", c.get_up, s.get_up);
   f("gather must be 0.01 to 10 s", c.gather, s.gather, 0.01, 10);
@@ -53,6 +53,7 @@ constexpr auto kSettings = [](auto& c, auto& s, auto&& f) {
   f("rise_torque must be 0 to 1e9 N m", c.rise_torque, s.rise_torque, 0, 1e9);
   f("walk_torque must be 0 to 1e9 N m", c.walk_torque, s.walk_torque, 0, 1e9);
   f("walk_force must be 0 to 1e9 N", c.walk_force, s.walk_force, 0, 1e9);
+  f("reach_strength must be 0 to 1", c.reach_strength, s.reach_strength, 0, 1);
 };
 
 /// act(OwnedBehaviour&, character) of a character that has one. `breaks`: as of in_world.

@@ -191,6 +191,15 @@ sinew_status sinew_character_set_group_strength(sinew_character character, const
   return change(character, [&](Character<float> c) { return c.set_group_strength(group, strength); });
 }
 
+sinew_status sinew_character_set_activation(sinew_character character, const float* activation,
+                                            int32_t count) {
+  if (!activation) return fail(SINEW_INVALID_ARGUMENT, kNull);
+  if (count < 0) return fail(SINEW_INVALID_ARGUMENT, "a number of joints below 0", count);
+  return change(character, [&](Character<float> c) {
+    return c.set_activation(std::span(activation, static_cast<std::size_t>(count)));
+  });
+}
+
 sinew_status sinew_character_set_tone(sinew_character character, sinew_tone tone) {
   return change_tone(character, tone, [&](Character<float> c, Tone t) { return c.set_tone(t); });
 }

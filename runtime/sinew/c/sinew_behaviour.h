@@ -47,7 +47,7 @@ typedef struct sinew_behaviour_settings {
   double reaction;             ///< s
   double gravity;              ///< m/s2, the world's
   double help_torque;          ///< N m of a human
-  double fallen_strength;      ///< of the muscles of who fell
+  double fallen_strength;      ///< of the muscles of who fell, 0 to 1
   double let_go;               ///< s
   sinew_get_up_policy get_up;  ///< when it gets up
   int32_t unused;              ///< 0
@@ -56,6 +56,7 @@ typedef struct sinew_behaviour_settings {
   double rise_torque;          ///< N m of a human, likewise
   double walk_torque;          ///< N m of a human, of help while steps of a walk catch it
   double walk_force;           ///< N of a human, likewise; beside it what its animation asks of no floor
+  double reach_strength;       ///< of its arms, which reach for the ground in a fall, 0 to 1; 0: they hang
 } sinew_behaviour_settings;
 
 /// How a character keeps its balance now.

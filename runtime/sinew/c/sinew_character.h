@@ -168,6 +168,10 @@ SINEW_API sinew_status sinew_character_set_muscle_strength(sinew_character chara
 /// The same of all muscles of a group; SINEW_NOT_FOUND if there are none.
 SINEW_API sinew_status sinew_character_set_group_strength(sinew_character character, const char* group,
                                                           float strength);
+/// How much of their strength muscles are given at the moment, [count] one for each joint of the skeleton, 0
+/// to 1: multiplies all strengths. For what moves a body beside the host, as behaviours do.
+SINEW_API sinew_status sinew_character_set_activation(sinew_character character, const float* activation,
+                                                      int32_t count);
 /// Tone of all muscles. The first that is not rigid allocates; so with the others.
 SINEW_API sinew_status sinew_character_set_tone(sinew_character character, sinew_tone tone);
 /// The same of the muscles of a joint and of those below it.

@@ -21,6 +21,23 @@ bool same_pose(const JointJet<T>& a, const JointJet<T>& b) {
   return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
 }
 
+/// Gives every joint's muscles that share of their strength.
+template <class T, class ActivationOf>
+Status activate(CharacterState<T>& s, const ActivationOf& activation_of) {
+  bool changes = false;
+  for (std::size_t i = 0; i < s.activation.size(); ++i) {
+    const T share = activation_of(i);
+    changes = changes || share != s.activation[i];
+    if (!(share >= T(0) && share <= T(1)))
+      return Status::error(Code::kInvalidArgument, "activation must be between 0 and 1", static_cast<int>(i));
+  }
+  if (!changes) return {};
+  for (std::size_t i = 0; i < s.activation.size(); ++i) s.activation[i] = activation_of(i);
+  s.refresh_limits();
+  s.levels.wake = true;
+  return {};
+}
+
 }  // namespace
 
 template <class T>
@@ -101,6 +118,20 @@ Status Character<T>::set_strength(int joint, T strength) {
   state_->refresh_limits();
   state_->levels.wake = true;
   return {};
+}
+
+template <class T>
+Status Character<T>::set_activation(std::span<const T> activation) {
+  if (!state_) return nobody();
+  if (activation.size() != state_->skeleton.joints.size())
+    return Status::error(Code::kInvalidArgument, "activation needs one number per joint of the skeleton");
+  return activate(*state_, [&](std::size_t joint) { return activation[joint]; });
+}
+
+template <class T>
+Status Character<T>::set_activation(T activation) {
+  if (!state_) return nobody();
+  return activate(*state_, [&](std::size_t) { return activation; });
 }
 
 template <class T>

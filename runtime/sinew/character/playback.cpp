@@ -144,7 +144,7 @@ bool is_beyond_its_help(const CharacterState<T>& s) {
   const Grounding<T>& g = s.grounding;
   const auto exceeds = [&](int first, T hand) {
     const T most =
-        T(s.help_at_most(first == 0) * s.settings.strength) + (g.by_hand ? T(kOfTheHand) * hand : T(0));
+        T(s.help_at_most(first == 0) * double(s.root_strength())) + (g.by_hand ? T(kOfTheHand) * hand : T(0));
     return std::any_of(s.problem.gradient.begin() + first, s.problem.gradient.begin() + first + 3,
                        [&](T asked) { return std::abs(asked) > most; });
   };
@@ -155,7 +155,9 @@ bool is_beyond_its_help(const CharacterState<T>& s) {
 template <class T>
 bool bears_with_all_its_strength(const CharacterState<T>& s, const CheckContext<T>& c) {
   const SupportPoints<T>& points = s.rig->support;
-  const auto is_weak = [&](int joint) { return s.joint_strength[joint] < T(1); };
+  const auto is_weak = [&](int joint) {
+    return s.joint_strength[joint] < T(1) || s.activation[joint] < T(1);
+  };
   for (int i = 0; i < s.tree.bodies; ++i) {
     bool bears = false;
     for (int k = points.first[i]; k < points.first[i + 1]; ++k)

@@ -275,6 +275,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   };
   visit_strengths("strength of a joint", s.joint_strength);
   visit_strengths("strength of a muscle", s.muscle_strength);
+  visit_strengths("activation of a joint", s.activation);
   stream.value("contacts that touched", s.contact_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
   stream.value("steps of suspended collision", s.collision_suspended);

@@ -120,6 +120,7 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       deviation(tree.bodies),
       joint_strength(tree.bodies, T(1)),
       muscle_strength(skeleton.muscles.size(), T(1)),
+      activation(tree.bodies, T(1)),
       torque(tree.dofs, T(0)),
       load(tree.dofs, T(0)),
       limit(tree.dofs, T(0)),
@@ -200,8 +201,7 @@ T scaled(double limit_at_rest, T strength) {
 template <class T>
 T CharacterState<T>::muscle_limit(int muscle, double limit_at_rest) const {
   const T own = scaled<T>(limit_at_rest, muscle_strength[muscle]);
-  const T joint = scaled<T>(double(own), joint_strength[skeleton.muscles[muscle].joint]);
-  return scaled<T>(double(joint), T(settings.strength));
+  return scaled<T>(double(own), strength_of(skeleton.muscles[muscle].joint));
 }
 
 template <class T>
@@ -220,7 +220,7 @@ void CharacterState<T>::refresh_limits() {
   for (int i = 0; i < tree.bodies; ++i) {
     const Joint& joint = skeleton.joints[i];
     const bool root = joint.type == JointType::kFree;
-    const T strength = T(settings.strength) * joint_strength[i];
+    const T strength = strength_of(i);
     for (int k = 0; k < tree.dof_count(i); ++k) {
       const int dof = tree.first_dof[i] + k;
       T minus = scaled(joint.dofs[k].torque_minus, strength),
@@ -231,7 +231,7 @@ void CharacterState<T>::refresh_limits() {
         if (grounded()) {
           const Vec3<T>& hand = k < 3 ? grounding.hand.force : grounding.hand.moment;
           const double given = grounding.has_hand ? double(hand.norm()) : 0;
-          minus = plus = scaled(help_at_most(k < 3) + given, T(settings.strength));
+          minus = plus = scaled(help_at_most(k < 3) + given, root_strength());
         }
         if (grounded() && grounding.leads) minus = plus = std::numeric_limits<T>::infinity();
       }

@@ -161,6 +161,7 @@ struct CharacterState {
   std::vector<Deviation<T>> deviation;             ///< [body]
   std::vector<T> joint_strength;                   ///< [body]
   std::vector<T> muscle_strength;                  ///< [muscle of the skeleton]
+  std::vector<T> activation;                       ///< [body] see Character::set_activation
   std::vector<T> torque, load, limit;              ///< [dof]
   std::vector<T> smooth, lasting, lasting_before;  ///< [dof] of limits and springs: see Contact
   std::vector<std::uint8_t> unknown;               ///< [dof]
@@ -195,8 +196,15 @@ struct CharacterState {
     return T(bears * std::max(1.0, world.gravity.norm()) /
              (world.accuracy.sink_depth * double(tree.scale.length)));
   }
+  /// What the muscles of a body's joint are given now of what they were made with, without those of its own.
+  T strength_of(int body) const {
+    const T own = joint_strength[body] * activation[body];
+    return own > T(0) ? T(settings.strength) * own : T(0);  // what is dead stays dead in who only plays
+  }
   /// What a limit (N·m) of one of the skeleton's muscles is at its strength, its joint's and the character's.
   T muscle_limit(int muscle, double limit_at_rest) const;
+  /// By which that of a grounded root is multiplied.
+  T root_strength() const { return activation[0] > T(0) ? T(settings.strength) * activation[0] : T(0); }
   /// N or N·m that may hold a grounded root besides the ground.
   double help_at_most(bool force) const;
   /// Muscle limits of this moment: strengths and the root's drive applied.

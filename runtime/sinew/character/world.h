@@ -226,6 +226,11 @@ class Character {
   /// Strength of a joint's muscles and of all below it, ≥ 0; that of all muscles multiplies it. Refuses what
   /// is no simulated joint.
   Status set_strength(int joint, T strength);
+  /// How much of their strength muscles are given at the moment, [joint of the skeleton] 0 to 1: multiplies
+  /// all strengths. For what moves a body beside the host, as behaviours do; strengths are the host's.
+  Status set_activation(std::span<const T> activation);
+  /// The same of all joints alike.
+  Status set_activation(T activation);
   /// Strength of one of Skeleton::muscles, ≥ 0; the character's and the joint's multiply it.
   Status set_muscle_strength(int muscle, T strength);
   /// The same of all muscles of a group (Muscle::group); refuses one that no muscle has.

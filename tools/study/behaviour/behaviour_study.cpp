@@ -158,6 +158,7 @@ BehaviourPlan BehaviourPlan::quick() {
   BehaviourPlan plan;
   plan.sweeps = {{Role::kChest, 60, 4, {10, 20, 30, 40, 50, 60, 80, 100, 120}, 3}};
   plan.hits = HitPlan::quick();
+  plan.falls = FallPlan::quick();
   plan.get_ups = GetUpPlan::quick();
   return plan;
 }
@@ -169,6 +170,7 @@ BehaviourPlan BehaviourPlan::full() {
        {std::pair{Role::kChest, 60.0}, {Role::kPelvis, 60}, {Role::kChest, 30}, {Role::kChest, 120}})
     plan.sweeps.push_back({where, hz, 8, ladder, 10});
   plan.hits = HitPlan::full();
+  plan.falls = FallPlan::full();
   return plan;
 }
 
@@ -189,6 +191,11 @@ convert::Error run_behaviour(const BehaviourPlan& plan, const std::function<void
   for (HitScene& hits : judge_hits(result.hits)) result.scenes.push_back({hits.name, hits.findings});
   result.scenes.push_back({"push_while_walking", {}});
   judge_walk(plan.phases, result.scenes.back().findings);
+  result.falls = run_falls(plan.falls, progress);
+  for (const double hz : plan.falls.rates) {
+    result.scenes.push_back({"falls_" + std::to_string(std::lround(hz)) + "_Hz", {}});
+    judge_falls(result.falls, hz, result.scenes.back().findings);
+  }
   result.get_ups = run_get_ups(plan.get_ups, progress);
   for (const GetUpResult& get_up : result.get_ups) {
     result.scenes.push_back({"get_up_" + get_up.name, {}});
@@ -219,6 +226,7 @@ nlohmann::json behaviour_json(const BehaviourResult& result) {
   }
   return {{"push_map", maps},
           {"hits", hits_json(result.hits)},
+          {"falls", falls_json(result.falls)},
           {"scenes", scenes},
           {"get_ups", get_ups_json(result.get_ups)}};
 }
@@ -227,6 +235,7 @@ std::string behaviour_table(const BehaviourResult& result) {
   std::string text;
   for (const PushMap& map : result.maps) text += map_table(map) + "\n";
   text += hits_table(result.hits);
+  text += falls_table(result.falls);
   text += get_ups_table(result.get_ups);
   for (const BehaviourScene& scene : result.scenes) text += scene_table(scene);
   return text;

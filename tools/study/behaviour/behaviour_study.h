@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "study/behaviour/falls.h"
 #include "study/behaviour/get_up_study.h"
 #include "study/behaviour/hits.h"
 #include "study/behaviour/push_map.h"
@@ -17,6 +18,7 @@ struct BehaviourPlan {
   HitPlan hits;
   double undisturbed = 60;  ///< s
   int phases = 4;           ///< of a walk, in which it is pushed
+  FallPlan falls;
   GetUpPlan get_ups;
 
   /// 8 directions, chest and pelvis, 10 seeds, chest also at 30 and 120 Hz.
@@ -34,6 +36,7 @@ struct BehaviourResult {
   std::vector<PushMap> maps;
   std::vector<Hit> hits;
   std::vector<BehaviourScene> scenes;
+  std::vector<FallRun> falls;
   std::vector<GetUpResult> get_ups;
 };
 
@@ -45,8 +48,9 @@ convert::Error run_behaviour(const BehaviourPlan& plan, const std::function<void
 const char* behaviour_known_to_fail(const std::string& scene);
 
 /// {"push_map": [{"scene", "direction", "stay_step_50", "step_fall_50", "human_stay_step",
-/// "human_step_fall"}], "hits": see hits_json, "scenes": [{"name", "passed", "criteria": [{"name", "value",
-/// "bound", "passed"}]}]}; N·s, null where the ladder of impulses does not reach.
+/// "human_step_fall"}], "hits": see hits_json, "falls": see falls_json, "scenes": [{"name", "passed",
+/// "criteria": [{"name", "value", "bound", "passed"}]}]}; N·s, null where the ladder of impulses does not
+/// reach.
 nlohmann::json behaviour_json(const BehaviourResult& result);
 std::string behaviour_table(const BehaviourResult& result);
 

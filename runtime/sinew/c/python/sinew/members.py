@@ -69,6 +69,11 @@ class Character(_Affected):
         else:
             self._call(lib.sinew_character_set_strength, strength)
 
+    def set_activation(self, activation):
+        """How much of their strength muscles are given at the moment: [joint] 0 to 1."""
+        count = len(activation)
+        self._call(lib.sinew_character_set_activation, (ctypes.c_float * count)(*activation), count)
+
     @property
     def strength(self):
         """Of all muscles."""
