@@ -22,6 +22,7 @@ constexpr double kLeans = 0.3;                  ///< s, of their speed that coun
 constexpr double kTouch = 0.01;                 ///< m
 constexpr double kLetsGo = 1, kWaits = 1.5;     ///< s, after a touch; s in which there has been none
 constexpr double kTrunk = 0.85, kLegs = 0.15;   ///< of the arms' share of their strength
+constexpr double kLegsGo = 0.5;                 ///< s, in which legs give way
 constexpr double kChinIn = 0.6, kChinUp = 0.5;  ///< rad
 
 Quat<double> about(const Vec3<double>& axis, double angle) {
@@ -159,10 +160,12 @@ void ProtectiveReach<T>::nod(double angle) {
 template <class T>
 double ProtectiveReach<T>::share_of(Part part) const {
   const double time = std::sqrt(unit_), least = settings_.fallen_strength;
-  const double of_arms = part == Part::kTrunk ? kTrunk : part == Part::kLeg ? kLegs : 1;
+  const double of_arms = part == Part::kLeg ? kLegs : part == Part::kTrunk ? kTrunk : 1;
   const double reaches = possible() ? std::max(of_arms * settings_.reach_strength, least) : least;
   const double comes = std::min(time_ / std::max(settings_.let_go, 1e-9), 1.0);
-  const double goes = touched_ < 0 ? 0 : std::min(touched_ / (kLetsGo * time), 1.0);
+  // Legs give way in any case: who stands in balance on little would not come down.
+  const double gone = part == Part::kLeg ? time_ / kLegsGo : touched_ / kLetsGo;
+  const double goes = std::clamp(gone / time, 0.0, 1.0);
   return std::lerp(std::lerp(1.0, reaches, comes), least, goes);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <mutex>
 #include <numbers>
+#include <set>
 
 #include "study/audit/member.h"
 #include "study/behaviour/push_map.h"
@@ -178,6 +179,7 @@ scene::Scene fall_scene(const FallCase& fall) {
   scene::Scene s =
       balancing_scene(walks ? "walk" : "stand", true, kCauseAt + kStride + kPushed + kWatchedFor, fall.hz);
   s.characters[0].settings.self_collision = true;
+  if (!fall.reaches) s.characters[0].behaviour->reach_strength = 0;
   const Skeleton& skeleton = s.characters[0].asset->skeleton;
   scene::Push p;
   p.time = kCauseAt + fall.phase;
@@ -202,12 +204,17 @@ scene::Scene fall_scene(const FallCase& fall) {
 
 std::vector<FallRun> run_falls(const FallPlan& plan, const std::function<void(int, int)>& progress) {
   std::vector<FallCase> cases;
+  const auto add = [&](const FallCase& fall) {
+    for (const bool reaches : {true, false}) {
+      cases.push_back(fall);
+      cases.back().reaches = reaches;
+    }
+  };
   for (const double hz : plan.rates) {
     for (const double impulse : plan.impulses)
-      for (int d = 0; d < 8; ++d)
-        cases.push_back({FallCause::kPush, d * std::numbers::pi / 4, impulse, 0, hz});
+      for (int d = 0; d < 8; ++d) add({FallCause::kPush, d * std::numbers::pi / 4, impulse, 0, hz});
     for (const FallCause cause : {FallCause::kTrip, FallCause::kSlip})
-      for (int n = 0; n < plan.phases; ++n) cases.push_back({cause, 0, 0, kStride * n / plan.phases, hz});
+      for (int n = 0; n < plan.phases; ++n) add({cause, 0, 0, kStride * n / plan.phases, hz});
   }
   std::vector<FallRun> runs(cases.size());
   std::mutex writing;
@@ -232,7 +239,7 @@ void judge_falls(const std::vector<FallRun>& falls, double hz, Findings& finding
   int fell = 0, hand_first = 0, head = 0, pelvis = 0;
   for (const FallRun& run : falls) {
     if (!run.refused.empty()) return findings.refuse(run.refused);
-    if (!run.fell || run.fall.hz != hz) continue;
+    if (!run.fell || !run.fall.reaches || run.fall.hz != hz) continue;
     ++fell;
     head += run.head_hit > kHeadStrikes;
     pelvis += run.pelvis >= 0;
@@ -254,6 +261,7 @@ nlohmann::json falls_json(const std::vector<FallRun>& falls) {
   nlohmann::json list = nlohmann::json::array();
   for (const FallRun& r : falls)
     list.push_back({{"scene", r.name},
+                    {"reaches", r.fall.reaches},
                     {"fell", r.fell},
                     {"hand_s", r.hand},
                     {"pelvis_s", r.pelvis},
@@ -274,17 +282,34 @@ std::string falls_table(const std::vector<FallRun>& falls) {
       "rests s  deep mm\n";
   char line[300];
   for (const FallRun& r : falls) {
-    if (!r.fell) {
-      std::snprintf(line, sizeof line, "    %-26s stands\n", r.name.c_str());
-      text += line;
-      continue;
-    }
-    std::snprintf(line, sizeof line,
-                  "    %-26s %5.2f %8.2f %8.2f %9.2f %9.2f %6.0f %9.0f %7.1f %8.2f %8.1f\n", r.name.c_str(),
-                  r.hand, r.pelvis, r.head, r.wrist_speed, r.head_hit, r.head_peak / kGravity, r.pelvis_force,
-                  r.joint_speed, r.rests, 1000 * r.depth);
+    if (!r.fall.reaches) continue;
+    std::snprintf(line, sizeof line, "    %-26s stands\n", r.name.c_str());
+    if (r.fell)
+      std::snprintf(line, sizeof line,
+                    "    %-26s %5.2f %8.2f %8.2f %9.2f %9.2f %6.0f %9.0f %7.1f %8.2f %8.1f\n", r.name.c_str(),
+                    r.hand, r.pelvis, r.head, r.wrist_speed, r.head_hit, r.head_peak / kGravity,
+                    r.pelvis_force, r.joint_speed, r.rests, 1000 * r.depth);
     text += line;
   }
+  text += "medians\n";
+  std::set<double> rates;
+  for (const FallRun& r : falls) rates.insert(r.fall.hz);
+  for (const double hz : rates)
+    for (const bool reaches : {true, false}) {
+      const auto median = [&](double FallRun::*of) {
+        std::vector<double> values;
+        for (const FallRun& r : falls)
+          if (r.fell && r.fall.hz == hz && r.fall.reaches == reaches) values.push_back(r.*of);
+        std::sort(values.begin(), values.end());
+        return values.empty() ? 0 : values[values.size() / 2];
+      };
+      std::snprintf(line, sizeof line, "    %-18s %3.0f Hz  %5.2f %8.2f %8.2f %9.2f %9.2f %6.0f %9.0f\n",
+                    reaches ? "who reaches" : "who is limp", hz, median(&FallRun::hand),
+                    median(&FallRun::pelvis), median(&FallRun::head), median(&FallRun::wrist_speed),
+                    median(&FallRun::head_hit), median(&FallRun::head_peak) / kGravity,
+                    median(&FallRun::pelvis_force));
+      text += line;
+    }
   return text + "\n";
 }
 

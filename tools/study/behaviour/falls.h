@@ -22,6 +22,7 @@ struct FallCase {
   double impulse = 0;    ///< N·s
   double phase = 0;      ///< s of a walk, that is tripped or slips
   double hz = 60;
+  bool reaches = true;  ///< with its arms for the ground; else it is limp, for comparison
 };
 
 struct FallRun {
@@ -55,10 +56,10 @@ struct FallPlan {
 
 scene::Scene fall_scene(const FallCase& fall);
 std::vector<FallRun> run_falls(const FallPlan& plan, const std::function<void(int, int)>& progress);
-/// Those at one rate.
+/// Those at one rate, of who reaches.
 void judge_falls(const std::vector<FallRun>& falls, double hz, Findings& findings);
-/// [{"scene", "fell", "hand_s", "pelvis_s", "head_s" (−1: never), "wrist_speed", "head_acceleration",
-/// "head_speed", "pelvis_force", "joint_speed", "rests_s", "depth"}], SI
+/// [{"scene", "reaches", "fell", "hand_s", "pelvis_s", "head_s" (−1: never), "wrist_speed",
+/// "head_acceleration", "head_speed", "pelvis_force", "joint_speed", "rests_s", "depth"}], SI
 nlohmann::json falls_json(const std::vector<FallRun>& falls);
 std::string falls_table(const std::vector<FallRun>& falls);
 
