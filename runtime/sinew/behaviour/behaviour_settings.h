@@ -29,7 +29,7 @@ struct BehaviourSettings {
   GetUpPolicy get_up = GetUpPolicy::kAuto;  ///< needs clips, see Behaviour::use_get_ups()
   double gather = 0.6;      ///< s, of a human, from where it lies into the pose from which it rises
   double rise_force = 0;    ///< N of a human, that an invisible hand may do while it rises; see the report
-  double rise_torque = 60;  ///< N·m of a human, likewise; with twice as much 11 instead of 10 of 12 stand
+  double rise_torque = 60;  ///< N·m of a human, likewise
 };
 
 }  // namespace sinew

@@ -25,10 +25,6 @@ constexpr double kTrunk = 0.85, kLegs = 0.15;   ///< of the arms' share of their
 constexpr double kLegsGo = 0.5;                 ///< s, in which legs give way
 constexpr double kChinIn = 0.6, kChinUp = 0.5;  ///< rad
 
-Quat<double> about(const Vec3<double>& axis, double angle) {
-  return rotation_exp<double>(axis * angle);
-}
-
 }  // namespace
 
 template <class T>
@@ -67,7 +63,7 @@ void ProtectiveReach<T>::prepare(const Skeleton& skeleton, const BehaviourSettin
     Quat<double> bent = elbow.rest.rotation;
     if (elbow.type == JointType::kRevolute) {
       const double way = elbow.dofs[0].upper + elbow.dofs[0].lower < 0 ? -1 : 1;
-      bent = bent * about(elbow.axis, way * kBent);
+      bent = bent * rotation_exp<double>(way * kBent * elbow.axis);
       arm.hinge = elbow.axis.template cast<T>();
     }
     arm.bent = bent.template cast<T>();
@@ -172,7 +168,7 @@ double ProtectiveReach<T>::share_of(Part part) const {
 /// What is asked of joints goes on to what is wanted of them, or comes to rest.
 template <class T>
 void ProtectiveReach<T>::follow(std::span<JointJet<T>> jets, double h) const {
-  const double time = kReachTime * std::sqrt(unit_), fades = -std::expm1(-2 * h / time);
+  const double time = kReachTime * std::sqrt(unit_), fades = -portable::expm1(-2 * h / time);
   const T fastest = T(kFastest / std::sqrt(unit_));
   for (std::size_t i = 1; i < jets.size(); ++i) {
     JointJet<T>& jet = jets[i];
