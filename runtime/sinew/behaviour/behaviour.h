@@ -133,7 +133,8 @@ struct LastStep {
 template <class T>
 class Behaviour {
  public:
-  /// Set-up: finds legs, soles and masses. Errors name what is missing, roles of thigh, shin, foot and toes, or what is wrong in the settings.
+  /// Set-up: finds legs, soles and masses. Errors name what is missing, roles of thigh, shin, foot and toes,
+  /// or what is wrong in the settings.
   Behaviour(const Skeleton& skeleton, const BehaviourSettings& settings, Status& status);
   Behaviour(const Behaviour&) = delete;
   Behaviour& operator=(const Behaviour&) = delete;
