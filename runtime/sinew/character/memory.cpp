@@ -33,8 +33,8 @@ std::size_t bytes_of(const CharacterState<T>& s) {
   const JointLaw<T>& law = p.law;
   return sizeof s +
          held(s.target, s.target_before, s.local, s.model_pose, s.played_from, s.rate, s.rate_before,
-              s.deviation, s.joint_strength, s.muscle_strength, s.activation, s.torque, s.load, s.limit, s.smooth,
-              s.lasting, s.lasting_before, s.unknown, s.impulses, s.forces, s.baked, s.wanted) +
+              s.deviation, s.joint_strength, s.muscle_strength, s.activation, s.torque, s.load, s.limit,
+              s.smooth, s.lasting, s.lasting_before, s.unknown, s.impulses, s.forces, s.baked, s.wanted) +
          held(law.torque_minus, law.torque_plus, law.dry_friction, law.damping, law.lower, law.upper,
               law.swing_limit, law.swing_axis, law.twist_lower, law.twist_upper, law.ellipsoidal, law.tone) +
          held(p.prediction.center, p.prediction.rotation, p.prediction.momentum) +
