@@ -247,8 +247,8 @@ class Behaviour {
   void finish(Character<T>& character);
   void return_to_clip(Character<T>& character);
   void fall(Character<T>& character, BehaviourReason reason, double number);
-  void let_go(Character<T>& character, double h);
-  bool lies(const Character<T>& character, double h);
+  void let_go(Character<T>& character, const MeasuredBody& world, double h);
+  bool lies(const MeasuredBody& is, double h);
   bool may_get_up() const;
   void lie(Character<T>& character, std::span<JointJet<T>> jets, double h);
   void rise(Character<T>& character, std::span<JointJet<T>> jets, double h);

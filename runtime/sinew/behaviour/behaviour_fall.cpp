@@ -35,8 +35,7 @@ void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double 
 
 /// Whether it has lain still for a while.
 template <class T>
-bool Behaviour<T>::lies(const Character<T>& character, double h) {
-  const MeasuredBody is = measure(character).without(character.displacement());
+bool Behaviour<T>::lies(const MeasuredBody& is, double h) {
   if (std::exchange(measured_, true))
     spin_ = rotation_log<double>(is.root.rotation * root_before_.conjugate()) / h;
   root_before_ = is.root.rotation;
@@ -48,13 +47,12 @@ bool Behaviour<T>::lies(const Character<T>& character, double h) {
 
 /// Arms reach for the ground; in the end all muscles have let go.
 template <class T>
-void Behaviour<T>::let_go(Character<T>& character, double h) {
-  const MeasuredBody is = measure(character);
+void Behaviour<T>::let_go(Character<T>& character, const MeasuredBody& world, double h) {
   FallingBody body;
-  body.mass = is.mass;
+  body.mass = world.mass;
   body.spin = character.displacement().turn() * spin_;
-  body.forward = is.root.rotation * forward_;
-  body.feet = from_above(is.foot[0].translation + is.foot[1].translation) / 2;
+  body.forward = world.root.rotation * forward_;
+  body.feet = from_above(world.foot[0].translation + world.foot[1].translation) / 2;
   body.ground = level_ + character.displacement().z;
   reach_.update(character, body, last_, h);
 }
@@ -69,8 +67,12 @@ bool Behaviour<T>::may_get_up() const {
 template <class T>
 void Behaviour<T>::lie(Character<T>& character, std::span<JointJet<T>> jets, double h) {
   if (!std::exchange(asked_, true)) std::copy(jets.begin(), jets.end(), last_.begin());
-  if (report_.state == BehaviourState::kFall && lies(character, h)) report_.state = BehaviourState::kDown;
-  let_go(character, h);
+  const bool falls = report_.state == BehaviourState::kFall;
+  if (falls || reach_.acts()) {
+    const MeasuredBody world = measure(character);
+    if (falls && lies(world.without(character.displacement()), h)) report_.state = BehaviourState::kDown;
+    if (reach_.acts()) let_go(character, world, h);
+  }
   if (report_.state == BehaviourState::kDown && may_get_up() && get_up_.begin(character, level_)) {
     report_.state = BehaviourState::kGather;
     ++report_.tries;
@@ -173,8 +175,8 @@ void Behaviour<T>::stand(Character<T> character) {
 
 #define SINEW_FALL_INSTANCES(T)                                                         \
   template void Behaviour<T>::fall(Character<T>&, BehaviourReason, double);             \
-  template bool Behaviour<T>::lies(const Character<T>&, double);                        \
-  template void Behaviour<T>::let_go(Character<T>&, double);                            \
+  template bool Behaviour<T>::lies(const MeasuredBody&, double);                        \
+  template void Behaviour<T>::let_go(Character<T>&, const MeasuredBody&, double);       \
   template bool Behaviour<T>::may_get_up() const;                                       \
   template void Behaviour<T>::lie(Character<T>&, std::span<JointJet<T>>, double);       \
   template void Behaviour<T>::rise(Character<T>&, std::span<JointJet<T>>, double);      \

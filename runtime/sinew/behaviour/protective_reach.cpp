@@ -90,6 +90,11 @@ void ProtectiveReach<T>::begin() {
 }
 
 template <class T>
+bool ProtectiveReach<T>::acts() const {
+  return touched_ <= 2 * kLetsGo * std::sqrt(unit_);
+}
+
+template <class T>
 bool ProtectiveReach<T>::touches(std::span<const Transform<T>> model, double ground) const {
   const auto is_low = [&](const ContactPoint<T>& p) {
     const Vec3<T> at = model[static_cast<std::size_t>(p.body)] * p.local;
@@ -213,7 +218,6 @@ template <class T>
 void ProtectiveReach<T>::update(Character<T>& character, const FallingBody& body, std::span<JointJet<T>> jets,
                                 double h) {
   const double time = std::sqrt(unit_);
-  if (touched_ > 2 * kLetsGo * time) return;
   time_ += h;
   if (touched_ >= 0)
     touched_ += h;

@@ -38,8 +38,10 @@ class ProtectiveReach {
   void prepare(const Skeleton& skeleton, const BehaviourSettings& settings, double unit);
   /// A new fall.
   void begin();
+  /// Whether something has not let go yet.
+  bool acts() const;
   /// Moves what was asked of the joints on by h s, and gives muscles as much of their strength as they need
-  /// for it. Nothing changes any more when all has let go.
+  /// for it. While it acts.
   void update(Character<T>& character, const FallingBody& body, std::span<JointJet<T>> jets, double h);
   /// Visits what begin() and update() remember. For Behaviour::save() and restore().
   void visit(ByteStream& stream);

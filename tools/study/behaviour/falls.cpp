@@ -6,6 +6,7 @@
 #include <mutex>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "study/audit/member.h"
 #include "study/behaviour/push_map.h"
@@ -20,6 +21,7 @@ using Eigen::Vector3d;
 constexpr double kCauseAt = 1, kStride = 1.067, kWatchedFor = 7;  ///< s
 constexpr double kFootImpulse = 45, kFootPulled = 0.2;            ///< N·s and s, of who is tripped or slips
 constexpr double kGravity = 9.81;
+constexpr double kFar = 1e9;         ///< m: of what has no solid
 constexpr double kTouches = 1e-3;    ///< m
 constexpr double kStill = 0.05;      ///< m/s
 constexpr double kNewTouch = 0.25;   ///< s
@@ -34,6 +36,8 @@ constexpr double kHeadPeak = 60 * kGravity;  ///< m/s²: not a knock-out (H15)
 constexpr double kPelvisForce = 5700;        ///< N: 4.0 ± 1.7 kN (H12)
 constexpr double kRests = 2, kDepth = 5e-3;  ///< s, m
 
+enum class Part { kFoot, kArm, kPelvis, kHead, kOther };  ///< an arm from the forearm on
+
 /// A recording's first character, body by body.
 class Faller {
  public:
@@ -41,7 +45,9 @@ class Faller {
       : recording_(recording),
         skeleton_(recording.characters[0]->skeleton),
         member_(audit::member_of(skeleton_)),
-        ground_(double(recording.ground.value_or(0.f))) {}
+        ground_(double(recording.ground.value_or(0.f))) {
+    for (int b = 0; b < bodies(); ++b) part_.push_back(part_of(b));
+  }
 
   std::vector<Transform<double>> poses(int frame) const {
     std::vector<Transform<double>> out;
@@ -57,7 +63,7 @@ class Faller {
     const std::vector<Transform<double>> at = poses(frame);
     std::vector<int> whose;
     const std::vector<audit::Solid> solids = audit::placed(member_, at, &whose);
-    std::vector<double> least(member_.bodies.size(), 1e9);
+    std::vector<double> least(member_.bodies.size(), kFar);
     for (std::size_t s = 0; s < solids.size(); ++s) {
       double& clear = least[static_cast<std::size_t>(whose[s])];
       clear = std::min(clear, -audit::below(solids[s], ground_));
@@ -65,10 +71,22 @@ class Faller {
     return least;
   }
   Vector3d center(int frame, int body) const {
-    return poses(frame)[static_cast<std::size_t>(body)] *
-           member_.bodies[static_cast<std::size_t>(body)].center;
+    const auto b = static_cast<std::size_t>(body);
+    return poses(frame)[b] * member_.bodies[b].center;
+  }
+  /// m/s, of a body's centre of mass, over the frame that ended before this one; 0 in the first two.
+  double speed_before(int frame, int body) const {
+    return frame < 2 ? 0 : (center(frame - 1, body) - center(frame - 2, body)).norm() / step();
   }
   Vector3d center_of_mass(int frame) const { return audit::center_of_mass(member_, poses(frame)); }
+  /// Of the arm that a body belongs to.
+  int hand_of(int body) const {
+    while (part(parent(body)) == Part::kArm) body = parent(body);  // now the forearm
+    const bool left = body == find(Role::kForearmL);
+    const int hand = find(left ? Role::kHandL : Role::kHandR);
+    return hand < 0 ? body : hand;
+  }
+  Part part(int body) const { return body < 0 ? Part::kOther : part_[static_cast<std::size_t>(body)]; }
   int find(Role role) const { return skeleton_.find(role); }
   int frames() const { return static_cast<int>(recording_.frames.size()); }
   double step() const { return 1 / recording_.frame_rate; }
@@ -77,10 +95,22 @@ class Faller {
   int bodies() const { return static_cast<int>(member_.bodies.size()); }
 
  private:
+  Part part_of(int body) const {
+    for (int b = body; b >= 0; b = parent(b)) {
+      const Role role = skeleton_.joints[static_cast<std::size_t>(b)].role;
+      if (role == Role::kFootL || role == Role::kFootR) return Part::kFoot;
+      if (role == Role::kForearmL || role == Role::kForearmR) return Part::kArm;
+      if (b == body && role == Role::kPelvis) return Part::kPelvis;
+      if (b == body && role == Role::kHead) return Part::kHead;
+    }
+    return Part::kOther;
+  }
+
   const scene::Recording& recording_;
   const Skeleton& skeleton_;
   audit::Member member_;
   double ground_;
+  std::vector<Part> part_;  ///< [body]
 };
 
 template <class Of>
@@ -99,76 +129,73 @@ std::string name_of(const FallCase& c) {
   return text;
 }
 
+/// `body` touches the ground in a frame, `since` s after the cause.
+void note_touch(const Faller& of, int frame, int body, double since, FallRun& run) {
+  const Part part = of.part(body);
+  run.fell = run.fell || part != Part::kFoot;
+  const auto first = [&](Part wanted, double& time) {
+    const bool now = part == wanted && time < 0;
+    if (now) time = since;
+    return now;
+  };
+  if (first(Part::kArm, run.hand)) run.wrist_speed = of.speed_before(frame, of.hand_of(body));
+  if (first(Part::kHead, run.head)) run.head_hit = of.speed_before(frame, body);
+  first(Part::kPelvis, run.pelvis);
+}
+
+/// Whether anything moves over the step that ends with a frame; and how fast joints turn.
+bool note_motion(const Faller& of, int frame, FallRun& run) {
+  double fastest = 0;
+  const std::vector<Transform<double>> now = of.poses(frame), before = of.poses(frame - 1);
+  for (std::size_t b = 0; b < now.size(); ++b) {
+    fastest = std::max(fastest, (now[b].translation - before[b].translation).norm() / of.step());
+    const int parent = of.parent(static_cast<int>(b));
+    if (parent < 0) continue;
+    const auto up = static_cast<std::size_t>(parent);
+    const Eigen::AngleAxisd turn((before[up].rotation.conjugate() * before[b].rotation).conjugate() *
+                                 (now[up].rotation.conjugate() * now[b].rotation));
+    run.joint_speed = std::max(run.joint_speed, turn.angle() / of.step());
+  }
+  return fastest > kStill;
+}
+
+/// What the head and the pelvis bear in a frame that is neither the first nor the last.
+void note_loads(const Faller& of, int frame, double since, FallRun& run) {
+  const int head = of.find(Role::kHead);
+  // A push ends 0.1 s after it began; what it does to the head is not the fall's.
+  if (head >= 0 && since > kPushed + 2 * of.step())
+    run.head_peak = std::max(
+        run.head_peak, acceleration(frame, of.step(), [&](int f) { return of.center(f, head); }).norm());
+  if (run.pelvis < 0 || since - run.pelvis > kPelvisHits) return;
+  const auto force = [&](int f) {
+    const double up = acceleration(f, of.step(), [&](int g) { return of.center_of_mass(g); }).z();
+    return of.mass() * (up + kGravity);
+  };
+  run.pelvis_force = std::max({run.pelvis_force, force(frame), force(std::max(frame - 1, 1))});
+}
+
 }  // namespace
 
 FallRun look_at_fall(const scene::Recording& recording, double since) {
   FallRun run;
   const Faller body(recording);
   const double h = body.step();
-  const int from = static_cast<int>(std::lround(since / h)), last = body.frames() - 1;
-  const auto foot = [&](int b) {
-    const int feet[] = {body.find(Role::kFootL), body.find(Role::kFootR)};
-    return b == feet[0] || b == feet[1] || body.parent(b) == feet[0] || body.parent(b) == feet[1];
-  };
-  const auto in_arm = [&](int b, Role forearm) {
-    const int top = body.find(forearm);
-    while (b > top) b = body.parent(b);
-    return top >= 0 && b == top;
-  };
-  const int pelvis = body.find(Role::kPelvis), head = body.find(Role::kHead);
-  std::vector<double> touched(static_cast<std::size_t>(body.bodies()), -1e9);
-  double last_touch = since, moves = since;
-  for (int f = from; f <= last; ++f) {
-    const double time = f * h;
+  std::vector<double> touched(static_cast<std::size_t>(body.bodies()), -1e9);  // [body] s, last
+  double last_touch = 0, moves = 0;                                            // s, since the cause
+  const int from = std::max(static_cast<int>(std::lround(since / h)), 1);
+  for (int f = from; f < body.frames(); ++f) {
+    const double time = f * h - since;
     const std::vector<double> clear = body.clearance(f);
     for (int b = 0; b < body.bodies(); ++b) {
-      const double c = clear[static_cast<std::size_t>(b)];
-      if (!foot(b) && c < 1e8) run.depth = std::max(run.depth, -c);  // clips press feet in
-      if (c > kTouches) continue;
-      double& before = touched[static_cast<std::size_t>(b)];
-      if (time - before > kNewTouch) last_touch = time;
-      before = time;
-      if (foot(b)) continue;
-      run.fell = true;
-      for (const Role forearm : {Role::kForearmL, Role::kForearmR})
-        if (run.hand < 0 && in_arm(b, forearm)) {
-          run.hand = time - since;
-          const int wrist = body.find(forearm == Role::kForearmL ? Role::kHandL : Role::kHandR);
-          const auto at = [&](int frame) {
-            return body.poses(frame)[static_cast<std::size_t>(wrist)].translation;
-          };
-          run.wrist_speed = (at(f - 1) - at(f - 2)).norm() / h;
-        }
-      if (b == pelvis && run.pelvis < 0) run.pelvis = time - since;
-      if (b == head && run.head < 0) {
-        run.head = time - since;
-        run.head_hit = (body.center(f - 1, head) - body.center(f - 2, head)).norm() / h;
-      }
+      const auto i = static_cast<std::size_t>(b);
+      const bool has_solid = clear[i] < kFar, clip_presses = body.part(b) == Part::kFoot;
+      if (has_solid && !clip_presses) run.depth = std::max(run.depth, -clear[i]);
+      if (clear[i] > kTouches) continue;
+      if (time - std::exchange(touched[i], time) > kNewTouch) last_touch = time;
+      note_touch(body, f, b, time, run);
     }
-    if (f > 0) {
-      double fastest = 0;
-      const std::vector<Transform<double>> now = body.poses(f), before = body.poses(f - 1);
-      for (std::size_t b = 0; b < now.size(); ++b) {
-        fastest = std::max(fastest, (now[b].translation - before[b].translation).norm() / h);
-        const int parent = body.parent(static_cast<int>(b));
-        if (parent < 0) continue;
-        const auto up = static_cast<std::size_t>(parent);
-        const Eigen::AngleAxisd turn((before[up].rotation.conjugate() * before[b].rotation).conjugate() *
-                                     (now[up].rotation.conjugate() * now[b].rotation));
-        run.joint_speed = std::max(run.joint_speed, turn.angle() / h);
-      }
-      if (fastest > kStill) moves = time;
-    }
-    // A push ends 0.1 s after it began; what it does to the head is not the fall's.
-    if (f < last && time > since + kPushed + 2 * h)
-      run.head_peak = std::max(
-          run.head_peak, acceleration(f, h, [&](int frame) { return body.center(frame, head); }).norm());
-    const double after = time - since - run.pelvis;
-    if (run.pelvis >= 0 && after <= kPelvisHits && f < last)
-      for (int g = std::max(f - 1, 1); g <= f; ++g) {
-        const double up = acceleration(g, h, [&](int frame) { return body.center_of_mass(frame); }).z();
-        run.pelvis_force = std::max(run.pelvis_force, body.mass() * (up + kGravity));
-      }
+    if (note_motion(body, f, run)) moves = time;
+    if (f + 1 < body.frames()) note_loads(body, f, time, run);
   }
   run.rests = std::max(moves - last_touch, 0.0);
   return run;
@@ -291,7 +318,7 @@ std::string falls_table(const std::vector<FallRun>& falls) {
                     r.pelvis_force, r.joint_speed, r.rests, 1000 * r.depth);
     text += line;
   }
-  text += "medians\n";
+  text += "medians, of those to whom it happens\n";
   std::set<double> rates;
   for (const FallRun& r : falls) rates.insert(r.fall.hz);
   for (const double hz : rates)
@@ -299,7 +326,7 @@ std::string falls_table(const std::vector<FallRun>& falls) {
       const auto median = [&](double FallRun::*of) {
         std::vector<double> values;
         for (const FallRun& r : falls)
-          if (r.fell && r.fall.hz == hz && r.fall.reaches == reaches) values.push_back(r.*of);
+          if (r.fell && r.fall.hz == hz && r.fall.reaches == reaches && r.*of > 0) values.push_back(r.*of);
         std::sort(values.begin(), values.end());
         return values.empty() ? 0 : values[values.size() / 2];
       };

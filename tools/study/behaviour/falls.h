@@ -32,7 +32,7 @@ struct FallRun {
   double hand = -1;         ///< s after the cause, when a hand or forearm touches the ground; negative: never
   double pelvis = -1;       ///< the same of the pelvis
   double head = -1;         ///< the same of the head
-  double wrist_speed = 0;   ///< m/s, of the wrist that touches first, a frame before
+  double wrist_speed = 0;   ///< m/s, of the hand of the arm that touches first, a frame before
   double head_peak = 0;     ///< m/s², most that the head's centre of mass is accelerated
   double head_hit = 0;      ///< m/s, of the head a frame before it touches
   double pelvis_force = 0;  ///< N, from the ground, most within 0.1 s of the pelvis touching it
