@@ -17,8 +17,9 @@ struct Falling : Pushed {
   Behaviour<float> behaviour;
   double hand = -1, hit = 0;  ///< s, when a wrist comes down first; m/s, of the head when it does
 
-  explicit Falling(const BehaviourSettings& settings = {}, double hz = 60)
-      : Pushed("stand"), behaviour(asset.skeleton, settings, status) {
+  explicit Falling(const BehaviourSettings& settings = {}, double hz = 60, bool self_collision = false)
+      : Pushed("stand", RootDrive::kGrounded, 0, self_collision),
+        behaviour(asset.skeleton, settings, status) {
     EXPECT_TRUE(status) << status.reason;
     h = float(1 / hz);
     behave = [this](std::span<JointJet<float>> wanted) {
@@ -73,7 +74,9 @@ TEST_P(Falls, HandsAreThereFirstAndTheHeadComesDownSlower) {
 INSTANTIATE_TEST_SUITE_P(Rates, Falls, testing::Values(30., 60., 120.));
 
 TEST(Fall, MusclesLetGoAndStrengthsStayTheHosts) {
-  Falling body;
+  BehaviourSettings settings;
+  settings.fallen_strength = 0.02;
+  Falling body(settings);
   ASSERT_TRUE(body.character().set_strength(0.8f));
   ASSERT_TRUE(body.character().set_strength(body.asset.skeleton.find(Role::kUpperArmL), 0.5f));
   body.run(0.1);
@@ -101,8 +104,42 @@ TEST(Fall, WhoHasNoArmsLetsGoAtOnce) {
   body.run(0.1);
   const double before = body.strongest(body.character());
   armless.knock_down(body.character());
+  EXPECT_GT(before, 0);
   body.run(0.2);
-  EXPECT_NEAR(body.strongest(body.character()), 0.02 * before, 1e-3 * before);
+  EXPECT_EQ(body.strongest(body.character()), 0);
+}
+
+/// Thighs that lie on each other, hands on the trunk: as of a character that always meets itself.
+TEST(Fall, WhoFellMeetsItselfUntilItStands) {
+  Falling asked({}, 60, true), by_itself, never;
+  for (Falling* body : {&asked, &by_itself, &never}) {
+    body->run(0.3);
+    body->behaviour.knock_down(body->character());
+    if (body == &never)
+      body->behave = [&](std::span<JointJet<float>> wanted) {
+        EXPECT_TRUE(never.behaviour.update(never.character(), wanted, never.h));
+        EXPECT_TRUE(never.character().meet_itself(false));
+      };
+    body->push(120, 1);
+    body->run(4);
+  }
+  const auto off = [&](Falling& body) {  // m, the furthest joint
+    float most = 0;
+    for (std::size_t joint = 0; joint < asked.character().model().size(); ++joint)
+      most = std::max(
+          most, (asked.character().model()[joint].translation - body.character().model()[joint].translation)
+                    .norm());
+    return most;
+  };
+  EXPECT_EQ(off(by_itself), 0);
+  EXPECT_GT(off(never), 0.01f);
+  by_itself.behaviour.stand(by_itself.character());
+  never.behaviour.stand(never.character());
+  for (Falling* body : {&by_itself, &never}) {
+    (void)body->character().reset();
+    body->run(0.1);
+  }
+  EXPECT_EQ((by_itself.place(Role::kHandL) - never.place(Role::kHandL)).norm(), 0) << "as the host has it";
 }
 
 TEST(Fall, RefusesSharesThatAreNone) {

@@ -28,7 +28,8 @@ struct Pushed {
 
   float ground = 0;  ///< m, height of the box that it stands on, where it does
 
-  explicit Pushed(const char* name, RootDrive root = RootDrive::kGrounded, float ground_height = 0)
+  explicit Pushed(const char* name, RootDrive root = RootDrive::kGrounded, float ground_height = 0,
+                  bool self_collision = false)
       : ground(ground_height) {
     EXPECT_TRUE(load_asset((binary_dir() + "/sample.sinew").c_str(), asset));
     if (ground > 0) {
@@ -40,6 +41,7 @@ struct Pushed {
     }
     CharacterSettings settings;
     settings.root = root;
+    settings.self_collision = self_collision;
     Status status;
     hero = world.add_character(asset.skeleton, settings, status);
     EXPECT_TRUE(status) << status.reason;

@@ -97,6 +97,54 @@ TEST(UnevenGround, WhoFellOnAGentleSlopeStandsOnIt) {
   }
 }
 
+/// The clip's ground is the slope while hands and knees are on it, and its body is upright over its feet.
+TEST(UnevenGround, WhoFellOnASlopeGetsUpOnIt) {
+  constexpr int kFalls = 8;
+  for (const double hz : {30.0, 60.0, 120.0}) {
+    int stand = 0;
+    for (int n = 0; n < kFalls; ++n) {
+      Uneven body("stand", hz);
+      body.tilt(0.087);
+      body.run(0.9);
+      body.behaviour.knock_down(body.character());
+      body.push(120, n * 2 * kPi / kFalls);
+      for (int frame = 0; frame < 25 * hz && !body.stood; ++frame) body.step();
+      body.run(2);
+      const Vec3<double> root = body.character().model()[0].translation.cast<double>();
+      stand += body.normal.dot(root - Vec3<double>(0, 0, 1)) > 0.85 ? 1 : 0;
+    }
+    GTEST_LOG_(INFO) << stand << " of " << kFalls << " stand two seconds later, at " << hz;
+    EXPECT_GE(stand, kFalls * 3 / 4) << hz;
+  }
+}
+
+/// Feet that a host has turned to the slope are not turned twice.
+TEST(UnevenGround, FeetThatAreOnTheirSlopeStayOnIt) {
+  for (const double slope : {0.1, 0.17}) {
+    Uneven body("stand", 60);
+    body.tilt(slope);
+    const Quat<float> turn = Quat<float>(Eigen::AngleAxisf(float(slope), Vec3<float>::UnitY()));
+    const auto placed = body.behave;
+    body.behave = [&](std::span<JointJet<float>> wanted) {
+      for (const Role role : {Role::kFootL, Role::kFootR}) {
+        const std::vector<int>& parents = body.soles.parents;
+        const int foot = body.asset.skeleton.find(role);
+        const MovingTransform<float> above =
+            model_motion<float>(wanted, parents, parents[static_cast<std::size_t>(foot)]);
+        JointJet<float>& jet = wanted[static_cast<std::size_t>(foot)];
+        const Quat<float> world = above.rotation.value * jet.rotation;
+        jet.rotation = above.rotation.value.conjugate() * (turn * world);
+      }
+      placed(wanted);
+    };
+    body.run(0.9);
+    body.push(25, 0.5 * kPi);
+    body.run(5);
+    EXPECT_FALSE(body.fell) << slope;
+    EXPECT_LT(body.depth(), 0.02) << "m; " << slope;
+  }
+}
+
 /// His legs give in, and straighten so slowly that nothing throws him up.
 TEST(UnevenGround, WhoIsDroppedLandsOnHisFeet) {
   for (const double hz : {30.0, 60.0, 120.0, 240.0})

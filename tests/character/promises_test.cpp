@@ -114,6 +114,51 @@ TEST(Character, ActivationMultipliesStrengthsAndRefusesWhatIsNoShare) {
   EXPECT_EQ(c.limit()[at(3)], full[at(3)]);
 }
 
+TEST(Character, MusclesWithoutActivationAreSlackAndNotGone) {
+  double dead = 0, slack = 0;  // J·s, of limbs that swing on a root that is driven
+  for (double* const sum : {&dead, &slack}) {
+    Playing<float> scene;
+    Character<float> c = scene.character();
+    ASSERT_TRUE(sum == &dead ? c.set_strength(0) : c.set_activation(0));
+    for (int frame = 0; frame < 120; ++frame) {
+      scene.step();
+      EXPECT_EQ(*std::max_element(c.limit().begin() + 6, c.limit().end()), 0) << "nothing pulls";
+      *sum += c.report().kinetic_energy / 60;
+    }
+  }
+  EXPECT_LT(slack, 0.7 * dead);
+}
+
+TEST(Character, MeetsItselfFromNowOnAndSoItDoesRestored) {
+  WorldSettings weightless;
+  weightless.ground = false;
+  weightless.gravity.setZero();
+  Playing<float> scene(weightless);
+  Character<float> c = scene.character();
+  std::vector<JointJet<float>> crossed = idle<float>(scene.skeleton, 0);
+  const auto thigh = std::find_if(scene.skeleton.joints.begin(), scene.skeleton.joints.end(),
+                                  [](const Joint& joint) { return joint.name.find("thigh") == 0; });
+  ASSERT_NE(thigh, scene.skeleton.joints.end());
+  JointJet<float>& jet = crossed[std::size_t(thigh - scene.skeleton.joints.begin())];
+  jet.rotation = jet.rotation * rotation_exp<float>(Vec3<float>(-0.3f, 0, 0));
+  const auto contacts = [&] {
+    EXPECT_TRUE(c.set_target(crossed));
+    EXPECT_TRUE(c.reset());
+    EXPECT_TRUE(c.set_strength(0.f));
+    EXPECT_TRUE(scene.world.step(1 / 60.f));
+    return c.report().contacts;
+  };
+  EXPECT_EQ(contacts(), 0);
+  ASSERT_TRUE(c.meet_itself(true));
+  EXPECT_GT(contacts(), 0);
+  std::vector<std::byte> saved(std::size_t(1) << 16);
+  const std::size_t bytes = scene.world.save(saved);
+  ASSERT_TRUE(c.meet_itself(false));
+  EXPECT_EQ(contacts(), 0);
+  ASSERT_TRUE(scene.world.restore(std::span(saved).first(bytes)));
+  EXPECT_GT(contacts(), 0);
+}
+
 TEST(World, RefusesStepsThatCannotBeTakenAndMovesNothing) {
   Playing<float> scene;
   scene.step();

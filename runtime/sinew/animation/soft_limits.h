@@ -26,4 +26,12 @@ TimeJet<T> soft_min(const TimeJet<T>& a, const TimeJet<T>& b, const T& width) {
   return a - soft_positive<T>(a - b, width);
 }
 
+/// x³(10 − 15x + 6x²) within 0 and 1, level beyond, C²: keeps a weight in its range without a kink.
+template <class T>
+TimeJet<T> soft_step(const TimeJet<T>& x) {
+  if (x.value <= T(0)) return TimeJet<T>(T(0));
+  if (x.value >= T(1)) return TimeJet<T>(T(1));
+  return x * x * x * (TimeJet<T>(T(10)) - x * (TimeJet<T>(T(15)) - T(6) * x));
+}
+
 }  // namespace sinew

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "sinew/animation/soft_limits.h"
 #include "sinew/character/grounding.h"
 #include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/rotation.h"
@@ -22,10 +23,11 @@ constexpr double kHeight = 0.12;                         ///< s, in which the bo
 constexpr double kStraight = 0.985;                      ///< of a leg's length, that it reaches
 constexpr double kStill = 0.05;                          ///< m/s
 constexpr double kSame = 0.01;                           ///< m
-constexpr double kFallen = 0.6;                          ///< of the root's height
-constexpr double kSquats = 0.4;                          ///< likewise, while it lands
-constexpr double kUpright = 0.77;                        ///< cos 40°: who tilts further from the clip falls
-constexpr double kOffPlan = 0.1, kOffPlanSpeed = 1;      ///< m, m/s: a plan that fails is made again
+constexpr double kOffSlope = 0.13;  ///< rad, of a slope from what the animation stands on, that topples it
+constexpr double kFallen = 0.6;     ///< of the root's height
+constexpr double kSquats = 0.4;     ///< likewise, while it lands
+constexpr double kUpright = 0.77;   ///< cos 40°: who tilts further from the clip falls
+constexpr double kOffPlan = 0.1, kOffPlanSpeed = 1;  ///< m, m/s: a plan that fails is made again
 constexpr double kDrop = 3, kRise = 12;        ///< m/s², of the body: feet that bear nothing can't press
 constexpr double kLands = 0.2, kGivesIn = 25;  ///< s, m/s²: likewise of legs that take up a fall
 constexpr double kUp = 0.03;                   ///< m below its height, at which they have
@@ -121,6 +123,7 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   see_flight(double(h));
   if (acts || last_step_.root_unknown) act(character, jets, h);
   ride(character, jets[0], double(h));
+  (void)character.meet_itself(fallen() || is_rising());  // limbs that nothing keeps apart
   return {};
 }
 
@@ -278,6 +281,11 @@ void Behaviour<T>::see_clip(const Character<T>& character, std::span<const Joint
         known ? *known : std::min(body_.lowest_of(0, clip_ankle_[0]), body_.lowest_of(1, clip_ankle_[1]));
   if (!leveled_) level_ = ground_;
   from_clip_ = clip_body_ - middle;
+  // A host may have turned feet to the ground: what they stand on is level, or sloped as the ground is,
+  // whichever their soles are nearer to.
+  Vec3<double> up = Vec3<double>::Zero();
+  for (std::size_t side = 0; side < 2; ++side) up += clip_ankle_[side].rotation * body_.sole_up[side];
+  clip_normal_ = up.dot(normal_) > up.z() ? normal_ : Vec3<double>::UnitZ();
 }
 
 template <class T>
@@ -413,13 +421,15 @@ double Behaviour<T>::rises_along(const Vec2& way) const {
 template <class T>
 void Behaviour<T>::choose_support(const MeasuredBody& is) {
   const Quat<double> slope = Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), normal_);
+  const Quat<double> flat_clip = Quat<double>::FromTwoVectors(clip_normal_, Vec3<double>::UnitZ());
   double higher = std::numeric_limits<double>::max();
   for (std::size_t side = 0; side < 2; ++side) {
     if (static_cast<int>(side) == swing_) continue;
     Transform<double>& foot = foot_[side];
     const Transform<double>& clip = clip_ankle_[side];
     foot = is.foot[side];
-    foot.rotation = slope * upright(foot.rotation * clip.rotation.conjugate()) * clip.rotation;
+    const Quat<double> flat = flat_clip * clip.rotation;
+    foot.rotation = slope * upright(foot.rotation * flat.conjugate()) * flat;
     foot.translation.z() =
         clip.translation.z() + rises_along(from_above(foot.translation - clip.translation));
     higher = std::min(higher, is.lowest[side] - body_.lowest_of(side, foot));
@@ -573,8 +583,7 @@ void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
     const double time = law_.step_time;
     const TimeJet<double> u{std::clamp(swing_time_ / time, 0.0, 1.0),
                             swing_time_ > 0 && swing_time_ < time ? 1 / time : 0, 0};
-    const TimeJet<double> share =
-        u * u * u * (TimeJet<double>(10) - TimeJet<double>(15) * u + TimeJet<double>(6) * u * u);
+    const TimeJet<double> share = soft_step(u);
     const TimeJet<double> back = TimeJet<double>(1) - u, bump = u * back;
     const TimeJet<double> up = TimeJet<double>(64 * law_.lift) * bump * bump * bump;
     const Vec3<double> way = foot_[side].translation - lifted_.translation;
@@ -621,6 +630,8 @@ template <class T>
 bool Behaviour<T>::may_finish(const MeasuredBody& is) const {
   // Who has just got up need not stand as well as it would like to.
   const double patience = risen_ ? 1 + std::max(report_.time - kPatient, 0.0) / kPatient : 1;
+  // Its animation would not stand here: it goes on to balance.
+  if ((normal_ - clip_normal_).norm() > kOffSlope) return false;
   return swing_ < 0 && landing_ == Landing::kNone && !fade_.running() &&
          from_above(is.mass.velocity).norm() < patience * kStill / 2 * std::sqrt(unit_) &&
          (from_above(is.mass.place) - goal()).norm() < patience * kSame / 2 * unit_ &&
@@ -672,13 +683,28 @@ Displacement Behaviour<T>::in_world(const Character<T>& character, const Displac
 template <class T>
 void Behaviour<T>::displace(Character<T>& character, const Displacement& further) {
   (void)character.displace(in_world(character, further));
+  see_ground_from(further);
+}
+
+/// The same of who is led.
+template <class T>
+void Behaviour<T>::displace_led(Character<T>& character, const Displacement& further) {
+  (void)character.displace_led(in_world(character, further));
+  see_ground_from(further);
+}
+
+/// The ground is where it was; `further` on is the frame in which it is known.
+template <class T>
+void Behaviour<T>::see_ground_from(const Displacement& further) {
+  level_ -= further.z;
+  normal_ = further.turn().conjugate() * normal_;
 }
 
 /// The clip again, from where the feet stand now, as the plan does already.
 template <class T>
 void Behaviour<T>::finish(Character<T>& character) {
   const Displacement further = to_feet();
-  (void)character.displace_led(in_world(character, further));
+  displace_led(character, further);
   last_[0] = displaced(further.inverse(), last_[0]);
   risen_ = false;
   return_to_clip(character);

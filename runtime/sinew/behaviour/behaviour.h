@@ -159,6 +159,10 @@ class Behaviour {
   bool fallen() const {
     return report_.state == BehaviourState::kFall || report_.state == BehaviourState::kDown;
   }
+  /// Whether it gathers its limbs or gets up.
+  bool is_rising() const {
+    return report_.state == BehaviourState::kGather || report_.state == BehaviourState::kRise;
+  }
   /// After it was down, or to give a behaviour up: the animation again, muscles as strong as they were. Where
   /// it lies is the animation's to begin from.
   void stand(Character<T> character);
@@ -223,6 +227,7 @@ class Behaviour {
   void move_swing(double h);
   void write_stance(std::span<JointJet<T>> jets, double h);
   void move_height(const std::array<Vec3<double>, 2>& ankle, const Vec2& shift, double higher, double h);
+  void see_ground_from(const Displacement& further);
   double rises_along(const Vec2& way) const;
   void begin_trunk(const MeasuredBody& is, const JointJet<T>& root);
   void begin_walk(Character<T>& character, const MeasuredBody& world, std::span<const JointJet<T>> jets,
@@ -243,7 +248,8 @@ class Behaviour {
   bool clip_rests(std::size_t side) const;
   double time_to_set_off() const;
   static Displacement in_world(const Character<T>& character, const Displacement& further);
-  static void displace(Character<T>& character, const Displacement& further);
+  void displace(Character<T>& character, const Displacement& further);
+  void displace_led(Character<T>& character, const Displacement& further);
   void finish(Character<T>& character);
   void return_to_clip(Character<T>& character);
   void fall(Character<T>& character, BehaviourReason reason, double number);
@@ -291,10 +297,11 @@ class Behaviour {
   std::array<MovingVector<double>, 2> foot_offset_{still<double>(Vec3<double>::Zero()),
                                                    still<double>(Vec3<double>::Zero())};
   std::array<MovingTransform<T>, 2> clip_foot_motion_;
-  double ground_ = 0;                            ///< m, height of what the clip stands on
-  double level_ = 0;                             ///< m, height of what the body stands or lies on
-  Vec3<double> normal_ = Vec3<double>::UnitZ();  ///< of what the body stands or lies on
-  bool leveled_ = false;                         ///< something has borne the body
+  double ground_ = 0;                                 ///< m, height of what the clip stands on
+  double level_ = 0;                                  ///< m, height of what the body stands or lies on
+  Vec3<double> normal_ = Vec3<double>::UnitZ();       ///< of what the body stands or lies on
+  Vec3<double> clip_normal_ = Vec3<double>::UnitZ();  ///< of what its animation stands on
+  bool leveled_ = false;                              ///< something has borne the body
   double higher_ = 0;  ///< m, by which that is higher below the feet of a plan than below the clip's
   CarriedFrame carried_, carried_next_;  ///< by ground that moves: now, and after the next step
   CarriedFrame ground_before_;           ///< what bore it last moved so

@@ -19,8 +19,7 @@ constexpr double kLie = 0.5, kNeverStill = 4;  ///< s; s after which it need not
 
 template <class T>
 void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double number) {
-  const bool rose = report_.state == BehaviourState::kGather || report_.state == BehaviourState::kRise;
-  if (!waits_ && !rose) stood_on_ = character.animation_ground().value_or(ground_);
+  if (!waits_ && !is_rising()) stood_on_ = character.animation_ground().value_or(ground_);
   report_.state = BehaviourState::kFall;
   risen_ = walks_ = waits_ = false;
   landing_ = Landing::kNone;
@@ -85,7 +84,7 @@ void Behaviour<T>::lie(Character<T>& character, std::span<JointJet<T>> jets, dou
 /// Gathers its limbs and gets up, by a clip of its own.
 template <class T>
 void Behaviour<T>::rise(Character<T>& character, std::span<JointJet<T>> jets, double h) {
-  const GetUpOutcome outcome = get_up_.update(character, last_, h);
+  const GetUpOutcome outcome = get_up_.update(character, body_, last_, h);
   switch (outcome) {
     case GetUpOutcome::kGathers:
       report_.state = BehaviourState::kGather;
@@ -118,7 +117,7 @@ void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jet
   get_up_.forget();
   waits_ = clip_walks();
   if (waits_) {
-    get_up_.stand(jets);
+    get_up_.stand(body_, jets);
     see_clip(character, jets);
   }
   tell(BehaviourEventKind::kStanding, BehaviourReason::kNone);
@@ -165,6 +164,7 @@ void Behaviour<T>::knock_down(Character<T> character) {
 template <class T>
 void Behaviour<T>::stand(Character<T> character) {
   (void)character.set_activation(T(1));
+  (void)character.meet_itself(false);
   (void)character.set_root_drive(RootDrive::kGrounded);
   (void)character.set_help(-1, -1);
   report_ = {};

@@ -102,6 +102,7 @@ void GetUp<T>::visit(ByteStream& stream) {
   for (double* number : {&place_.x, &place_.y, &place_.yaw, &place_.z})
     stream.value("place of the clip", *number);
   stream.value("ground of the clip", ground_);
+  stream.vector("slope of the clip's ground", normal_);
   visit_jet("time in the clip", time_, stream);
   stream.value("change of the clip's rate", rate_change_);
   visit_fade(fade_, fade_numbers_, stream);

@@ -61,14 +61,14 @@ void Behaviour<T>::wait(Character<T>& character, std::span<JointJet<T>> jets) {
   if (sets_off_ > 0)
     set_off(character);
   else
-    get_up_.stand(jets);
+    get_up_.stand(body_, jets);
 }
 
 /// The host's animation, which was seen, begins behind the body and faces as it does.
 template <class T>
 void Behaviour<T>::set_off(Character<T>& character) {
   waits_ = false;
-  get_up_.stand(last_);
+  get_up_.stand(body_, last_);
   const Vec2 is = from_above(body_.mass_of(last_, model_).place);
   const Quat<double> off = last_[0].rotation.template cast<double>() * clip_root_.conjugate();
   Displacement further;
@@ -78,7 +78,7 @@ void Behaviour<T>::set_off(Character<T>& character) {
   further.x = way.x();
   further.y = way.y();
   further.z = ground_ - stood_on_;
-  (void)character.displace_led(in_world(character, further));
+  displace_led(character, further);
   last_[0] = displaced(further.inverse(), last_[0]);
   fades_ = fades_root_ = true;
   placed_ = {};

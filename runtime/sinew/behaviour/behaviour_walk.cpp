@@ -98,7 +98,7 @@ void Behaviour<T>::change_feet(Character<T>& character, const MeasuredBody& worl
   swung_ = false;
   lands_in_ = kOnTime;
   const Displacement further = to_standing_foot(world.without(character.displacement()), h);
-  (void)character.displace_led(in_world(character, further));
+  displace_led(character, further);
   const Vec2 way(further.x, further.y);
   error_.place -= way;
   for (MovingVector<double>& offset : foot_offset_)

@@ -5,6 +5,10 @@
 // nothing but the ground. *Rise*: the clip is played from there with a rate that waits where the body is
 // behind, r = clamp(1.5 − e/0.08 m, 0, 1), e how far the body is from the clip's pose wherever that stands
 // and faces (Tao et al., "Learning to get up", 2022, wait in poses that bear, too); the root is grounded.
+//
+// On a slope the clip's ground is the plane that bears the body, so that hands, knees and feet find it. As
+// the centre of mass comes over the feet the body leans back to the vertical about its ankles, by w of the
+// slope, w from 0 (40 cm off them) to 1 (15 cm), C²; legs reach for the feet where they were.
 #pragma once
 
 #include <vector>
@@ -12,6 +16,7 @@
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/behaviour/behaviour_settings.h"
 #include "sinew/behaviour/get_up_clips.h"
+#include "sinew/behaviour/stance.h"
 #include "sinew/character/world.h"
 
 namespace sinew {
@@ -38,12 +43,14 @@ class GetUp {
                double unit, double weight);
   /// Whether there is a clip to get up by.
   bool possible() const { return !clips_.empty(); }
-  /// From where the body lies. `ground`: m, height of what it is to stand on. Whether there is a way.
+  /// From where the body lies. `ground`: m, height of what it is to stand on, where nothing bears it now.
+  /// Whether there is a way.
   bool begin(Character<T>& character, double ground);
   /// Moves on by h s, and writes what the body is to do.
-  GetUpOutcome update(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  GetUpOutcome update(Character<T>& character, const StandingBody<T>& body, std::span<JointJet<T>> jets,
+                      double h);
   /// Writes the pose in which its clip ends, at rest, where that was played. After begin(). O(joints).
-  void stand(std::span<JointJet<T>> jets) const;
+  void stand(const StandingBody<T>& body, std::span<JointJet<T>> jets);
   /// Visits what begin() and update() remember. For Behaviour::save() and restore().
   void visit(ByteStream& stream);
   /// Forgets which clips failed.
@@ -54,13 +61,18 @@ class GetUp {
   const GetUpClips<T>& clips() const { return clips_; }  ///< by which it may get up
 
  private:
+  void look_at_ground(const Character<T>& character, double ground);
   void look(const Character<T>& character);
+  GetUpChoice choose() const;
   bool gather_to(const Character<T>& character, const GetUpChoice& choice);
   GetUpOutcome gather(Character<T>& character, std::span<JointJet<T>> jets, double h);
   bool rolls() const;
   GetUpOutcome roll(Character<T>& character, std::span<JointJet<T>> jets, double h);
-  GetUpOutcome rise(const Character<T>& character, std::span<JointJet<T>> jets, double h);
+  GetUpOutcome rise(const Character<T>& character, const StandingBody<T>& body, std::span<JointJet<T>> jets,
+                    double h);
   void begin_rise(Character<T>& character);
+  double height(const Character<T>& character) const;
+  void lean(const StandingBody<T>& body, std::span<JointJet<T>> jets);
   void put(std::span<JointJet<T>> jets) const;
   GetUpOutcome fail(GetUpOutcome why);
   void move_time(double h);
@@ -74,13 +86,15 @@ class GetUp {
   double elapsed_ = 0, waits_ = 0, off_ = 0, strong_from_ = 0;
   double caught_ = 0;   ///< m, that it was off when it began to rise: a limb under the body, that comes free
   Displacement place_;  ///< of the clip
-  double ground_ = 0;   ///< m, height of its ground
+  double ground_ = 0;   ///< m, height of its ground at the origin
+  Vec3<double> normal_ = Vec3<double>::UnitZ();  ///< of its ground; exactly up where that is level
   TimeJet<double> time_{0.0};
   double rate_change_ = 0;  ///< 1/s², how τ'' changes: that time itself is C²
   InertialState<T> fade_;
   std::vector<T> fade_numbers_;
   std::vector<JointJet<T>> lies_, pose_;   ///< [joint]
   std::vector<Transform<T>> model_;        ///< [joint]
+  std::vector<MovingTransform<T>> moves_;  ///< [joint]
   std::vector<Vec3<double>> is_, wanted_;  ///< [point] m
 };
 

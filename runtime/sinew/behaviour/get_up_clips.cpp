@@ -15,6 +15,7 @@ constexpr double kEntered =
 constexpr double kEvery = 0.1;    ///< s from one entry to the next
 constexpr double kBears = 0.02;   ///< m over the lowest point: what bears
 constexpr double kInside = 0.01;  ///< m, of the centre of mass inside what bears
+constexpr double kAsNear = 0.08;  ///< m, as far off as another pose, or no further off than that
 constexpr double kReach = 0.25;   ///< m off the nearest entry, from which a roll is looked for
 
 bool begins_with(const std::string& name, std::string_view word) {
@@ -109,17 +110,21 @@ Fit GetUpClips<T>::fit(int entry, std::span<const Vec3<double>> is) const {
 }
 
 template <class T>
-GetUpChoice GetUpClips<T>::choose(std::span<const Vec3<double>> is, std::uint32_t tried) const {
+GetUpChoice GetUpClips<T>::choose(std::span<const Vec3<double>> is, std::uint32_t tried, bool turns) const {
   GetUpChoice up, roll;
   for (int n = 0; n < static_cast<int>(entries_.size()); ++n) {
     const int variant = entry(n).variant;
     if ((tried >> variant) & 1u) continue;
+
     GetUpChoice& best = variants_[static_cast<std::size_t>(variant)].rolls ? roll : up;
     const Fit found = fit(n, is);
     if (best.entry < 0 || found.off < best.fit.off) best = {n, found};
   }
-  const bool far = up.entry < 0 || up.fit.off > kReach * unit_;
-  return far && roll.entry >= 0 && (up.entry < 0 || roll.fit.off < up.fit.off) ? roll : up;
+  if (roll.entry < 0) return up;
+  if (up.entry < 0) return roll;
+  const double nearer = up.fit.off - roll.fit.off;  // m, is the roll
+  const bool far = up.fit.off > kReach * unit_;
+  return (far && nearer > 0) || (turns && nearer > -kAsNear * unit_) ? roll : up;
 }
 
 template <class T>

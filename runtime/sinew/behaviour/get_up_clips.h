@@ -53,8 +53,9 @@ class GetUpClips {
   const PosePoints<T>& points() const { return points_; }
 
   /// The entry nearest to a body, of variants that are not in `tried` (a bit each). Rolls only where no
-  /// other is within reach. O(entries · points).
-  GetUpChoice choose(std::span<const Vec3<double>> is, std::uint32_t tried) const;
+  /// other is within reach; or, `turns` set, where one is about as near as any other: who lies on a slope
+  /// gets up by his hands, and not from a seat. O(entries · points).
+  GetUpChoice choose(std::span<const Vec3<double>> is, std::uint32_t tried, bool turns = false) const;
   /// How far a body is from one entry.
   Fit fit(int entry, std::span<const Vec3<double>> is) const;
   /// What a variant does. O(joints).

@@ -19,14 +19,6 @@ constexpr double kTip = 0.7;     ///< of the way to their farthest point, from w
 constexpr double kSoft = 1e-3;   ///< m, in which a sole begins to be lifted
 constexpr int kRounds = 3;       ///< in which the root comes to where the centre of mass is wanted
 
-template <class T>
-MovingVector<T> cast(const MovingVector<double>& v) {
-  const auto of = [](const TimeJet<double>& x) {
-    return TimeJet<T>(static_cast<T>(x.value), static_cast<T>(x.rate), static_cast<T>(x.acceleration));
-  };
-  return {of(v.x()), of(v.y()), of(v.z())};
-}
-
 Transform<double> rest_of(const Skeleton& skeleton, int joint) {
   Transform<double> rest;
   for (int i = joint; i >= 0; i = skeleton.joints[static_cast<std::size_t>(i)].parent)
@@ -137,9 +129,7 @@ void lift_tips(const StandingBody<T>& body, std::size_t side, T ground, std::spa
 template <class T>
 JointJet<T> turned(const JointJet<T>& root, const MovingVector<double>& turn) {
   MovingTransform<T> out = moving_transform<T>(root);
-  const MovingVector<T> half = cast<T>(turn) * TimeJet<T>(T(0.5));
-  out.rotation =
-      moving_rotation(Quat<TimeJet<T>>(TimeJet<T>(T(1)), half.x(), half.y(), half.z())) * out.rotation;
+  out.rotation = turned_by(cast_motion<T>(turn)) * out.rotation;
   return joint_jet<T>(out);
 }
 
@@ -172,6 +162,7 @@ Status StandingBody<T>::find(const Skeleton& skeleton) {
                             ankle = rest_of(skeleton, leg.foot);
     leg_length[side] =
         (knee.translation - hip.translation).norm() + (ankle.translation - knee.translation).norm();
+    sole_up[side] = ankle.rotation.conjugate() * Vec3<double>::UnitZ();
     sole = std::min(sole, lowest_of(side, ankle));
   }
   height = skeleton.joints[0].rest.translation.z() - sole;
@@ -261,7 +252,8 @@ void take_stance(const StandingBody<T>& body, const Stance& stance, std::span<Jo
     jets[0] = stands;
     for (std::size_t side = 0; side < 2; ++side) {
       for (std::size_t n = 0; n < 3; ++n) leg_joint(side, n) = legs[side][n];
-      reach_foot<T>(body, side, cast<T>(stance.ankle[side]), {stance.foot[side].template cast<T>()}, jets);
+      reach_foot<T>(body, side, cast_motion<T>(stance.ankle[side]), {stance.foot[side].template cast<T>()},
+                    jets);
     }
   }
 }
@@ -271,7 +263,7 @@ void take_feet(const StandingBody<T>& body, const MovingVector<double>& shift,
                const MovingVector<double>& turn, const std::array<MovingTransform<T>, 2>& feet,
                std::span<JointJet<T>> jets) {
   MovingTransform<T> root = moving_transform<T>(turned<T>(jets[0], turn));
-  root.translation = root.translation + cast<T>(shift);
+  root.translation = root.translation + cast_motion<T>(shift);
   jets[0] = joint_jet<T>(root);
   for (std::size_t side = 0; side < 2; ++side)
     reach_foot<T>(body, side, feet[side].translation, feet[side].rotation, jets);

@@ -45,6 +45,7 @@ struct StandingBody {
   std::array<std::vector<SolePoint<T>>, 2> soles;  ///< those that are lowest at rest
   std::array<std::vector<SolePoint<T>>, 2> tips;   ///< those of them with which toes end
   std::array<double, 2> leg_length;                ///< m, hip to ankle, straight
+  std::array<Vec3<double>, 2> sole_up;             ///< foot axes: upwards while the foot stands flat
   double total_mass = 0;                           ///< kg
   double height = 0;                               ///< m, of the root's origin at rest over the soles
 
@@ -67,6 +68,22 @@ struct StandingBody {
   template <class U, class Place>
   double lowest(std::size_t foot, const Place& place_of) const;
 };
+
+/// In another precision.
+template <class To, class From>
+MovingVector<To> cast_motion(const MovingVector<From>& v) {
+  const auto of = [](const TimeJet<From>& x) {
+    return TimeJet<To>(static_cast<To>(x.value), static_cast<To>(x.rate), static_cast<To>(x.acceleration));
+  };
+  return {of(v.x()), of(v.y()), of(v.z())};
+}
+
+/// A turn by a vector, rad: of little more than a third of a radian less by a hundredth.
+template <class T>
+MovingRotation<T> turned_by(const MovingVector<T>& turn) {
+  const MovingVector<T> half = turn * TimeJet<T>(T(0.5));
+  return moving_rotation(Quat<TimeJet<T>>(TimeJet<T>(T(1)), half.x(), half.y(), half.z()));
+}
 
 /// What a stance asks for at an instant.
 struct Stance {

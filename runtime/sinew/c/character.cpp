@@ -200,6 +200,10 @@ sinew_status sinew_character_set_activation(sinew_character character, const flo
   });
 }
 
+sinew_status sinew_character_meet_itself(sinew_character character, int32_t meets) {
+  return change(character, [&](Character<float> c) { return c.meet_itself(meets != 0); });
+}
+
 sinew_status sinew_character_set_tone(sinew_character character, sinew_tone tone) {
   return change_tone(character, tone, [&](Character<float> c, Tone t) { return c.set_tone(t); });
 }

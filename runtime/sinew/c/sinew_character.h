@@ -172,6 +172,9 @@ SINEW_API sinew_status sinew_character_set_group_strength(sinew_character charac
 /// to 1: multiplies all strengths. For what moves a body beside the host, as behaviours do.
 SINEW_API sinew_status sinew_character_set_activation(sinew_character character, const float* activation,
                                                       int32_t count);
+/// Whether limbs meet each other from now on, where the settings do not ask for it anyhow (flag). Behaviours
+/// ask for it of who fell.
+SINEW_API sinew_status sinew_character_meet_itself(sinew_character character, int32_t meets);
 /// Tone of all muscles. The first that is not rigid allocates; so with the others.
 SINEW_API sinew_status sinew_character_set_tone(sinew_character character, sinew_tone tone);
 /// The same of the muscles of a joint and of those below it.

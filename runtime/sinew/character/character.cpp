@@ -135,6 +135,13 @@ Status Character<T>::set_activation(T activation) {
 }
 
 template <class T>
+Status Character<T>::meet_itself(bool meets) {
+  if (!state_) return nobody();
+  state_->meets_itself = meets;
+  return {};
+}
+
+template <class T>
 Status Character<T>::set_muscle_strength(int muscle, T strength) {
   if (!state_) return nobody();
   if (muscle < 0 || muscle >= static_cast<int>(state_->muscle_strength.size()))

@@ -507,7 +507,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   follows_.clear();
   for (auto* v : {&first_bound_, &first_body_}) v->clear();
   const bool around = world.ground || !surroundings.obstacles.empty() || !surroundings.hosts.empty();
-  if (!around && states.size() == 1 && !states[0]->settings.self_collision) return contacts_;
+  if (!around && states.size() == 1 && !states[0]->has_self_collision()) return contacts_;
   for (CharacterState<T>* s : states) {
     first_bound_.push_back(static_cast<int>(bounds_.size()));
     bound(*s, h);
@@ -516,7 +516,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   for (int n = 0; n < static_cast<int>(states.size()); ++n) {
     if (states[n]->settings.ground_contact) meet_static(n, surroundings);
     for (int m = 0; m < static_cast<int>(states.size()); ++m)
-      if (m != n ? world.body_contact && states[n]->may_meet(*states[m]) : states[n]->settings.self_collision)
+      if (m != n ? world.body_contact && states[n]->may_meet(*states[m]) : states[n]->has_self_collision())
         meet_tree(n, m);
   }
   begin_all();

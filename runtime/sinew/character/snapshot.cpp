@@ -242,12 +242,14 @@ void visit_tone(CharacterState<T>& s, ByteStream& stream) {
 
 template <class T>
 void visit_state(CharacterState<T>& s, ByteStream& stream) {
-  constexpr std::uint8_t kDisplaced = 0x80;
-  std::uint8_t root =
-      static_cast<std::uint8_t>(s.settings.root) | (s.grounding.by.any() ? kDisplaced : std::uint8_t{0});
+  constexpr std::uint8_t kDisplaced = 0x80, kMeetsItself = 0x40;
+  std::uint8_t root = static_cast<std::uint8_t>(s.settings.root) |
+                      (s.grounding.by.any() ? kDisplaced : std::uint8_t{0}) |
+                      (s.meets_itself ? kMeetsItself : std::uint8_t{0});
   stream.value("root drive", root);
   const bool displaced = (root & kDisplaced) != 0;
-  root &= static_cast<std::uint8_t>(~kDisplaced);
+  if (stream.reading()) s.meets_itself = (root & kMeetsItself) != 0;
+  root &= static_cast<std::uint8_t>(~(kDisplaced | kMeetsItself));
   stream.flag("out of the world", s.parked);
   if (stream.reading() && root <= static_cast<std::uint8_t>(RootDrive::kGrounded))
     s.settings.root = static_cast<RootDrive>(root);

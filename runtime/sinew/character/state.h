@@ -131,6 +131,7 @@ struct CharacterState {
 
   CharacterSettings settings;
   Grounding<T> grounding;
+  bool meets_itself = false;  ///< see Character::meet_itself
   bool is_prop = false;       ///< or a body of particles: nothing animates it
   bool is_particles = false;  ///< every body but the fixed root is a particle
   CharacterDetail detail;
@@ -201,6 +202,8 @@ struct CharacterState {
     const T own = joint_strength[body] * activation[body];
     return own > T(0) ? T(settings.strength) * own : T(0);  // what is dead stays dead in who only plays
   }
+  /// Whether its limbs collide with each other.
+  bool has_self_collision() const { return settings.self_collision || meets_itself; }
   /// What a limit (N·m) of one of the skeleton's muscles is at its strength, its joint's and the character's.
   T muscle_limit(int muscle, double limit_at_rest) const;
   /// By which that of a grounded root is multiplied.
@@ -209,6 +212,8 @@ struct CharacterState {
   double help_at_most(bool force) const;
   /// Muscle limits of this moment: strengths and the root's drive applied.
   void refresh_limits();
+  /// What joints lose of this moment: muscles that are given less than all of their strength resist.
+  void refresh_damping();
   /// Velocity (m/s, world) of a body's material point, given from the common origin of `problem.kinematics`.
   Vec3<T> point_velocity(int body, const Vec3<T>& point) const {
     const Mat3<T> spin = history.rotation_rate[body] * history.rotation[body].transpose();

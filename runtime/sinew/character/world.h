@@ -93,7 +93,7 @@ struct CharacterSettings {
   double strength = 1;          ///< scales every muscle; 0 = ragdoll, infinity = pure playback
   Tone tone = Tone::kRigid;     ///< how far all muscles give way below their limits, see set_tone()
   bool ground_contact = true;   ///< meets what is static: ground, obstacles, the host's shapes
-  bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
+  bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest; meet_itself()
   CharacterDetail detail;       ///< see Character::set_detail()
   std::uint32_t layers = 1;     ///< bits by which queries (queries.h) and `meets` choose
   /// Of characters, props and particles it touches those with one of these bits in their layers, that would
@@ -227,10 +227,15 @@ class Character {
   /// is no simulated joint.
   Status set_strength(int joint, T strength);
   /// How much of their strength muscles are given at the moment, [joint of the skeleton] 0 to 1: multiplies
-  /// all strengths. For what moves a body beside the host, as behaviours do; strengths are the host's.
+  /// all strengths. For what moves a body beside the host, as behaviours do; strengths are the host's. A
+  /// muscle that is given less is slack, not gone: it resists with 5 ms of what it lacks of its limit,
+  /// N·m·s/rad (of a human; more time of what is larger).
   Status set_activation(std::span<const T> activation);
   /// The same of all joints alike.
   Status set_activation(T activation);
+  /// Whether limbs meet each other from now on where CharacterSettings::self_collision does not ask for it
+  /// anyhow. For what moves a body beside the host, too: behaviours ask for it of who fell.
+  Status meet_itself(bool meets);
   /// Strength of one of Skeleton::muscles, ≥ 0; the character's and the joint's multiply it.
   Status set_muscle_strength(int muscle, T strength);
   /// The same of all muscles of a group (Muscle::group); refuses one that no muscle has.

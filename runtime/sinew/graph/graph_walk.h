@@ -1,6 +1,7 @@
 // What several passes over a graph share. Internal to this layer.
 #pragma once
 
+#include "sinew/animation/soft_limits.h"
 #include "sinew/graph/graph_scratch.h"
 
 namespace sinew {
@@ -20,14 +21,6 @@ ClipTime played_time(const Clip& clip, const TimeJet<double>& played);
 /// Where a clip of the graph (Graph::clips) is at present.
 template <class T>
 ClipTime clip_time(const Graph& graph, GraphBlock<T>& block, int clip);
-
-/// x³(10 − 15x + 6x²) within 0 and 1, level beyond: keeps a weight in its range without a kink.
-template <class T>
-TimeJet<T> soft_step(const TimeJet<T>& x) {
-  if (x.value <= T(0)) return TimeJet<T>(T(0));
-  if (x.value >= T(1)) return TimeJet<T>(T(1));
-  return x * x * x * (TimeJet<T>(T(10)) - x * (TimeJet<T>(T(15)) - T(6) * x));
-}
 
 /// How much the game shows of something: a number, or a parameter between 0 and 1.
 template <class T>
