@@ -114,21 +114,6 @@ TEST(Character, ActivationMultipliesStrengthsAndRefusesWhatIsNoShare) {
   EXPECT_EQ(c.limit()[at(3)], full[at(3)]);
 }
 
-TEST(Character, MusclesWithoutActivationAreSlackAndNotGone) {
-  double dead = 0, slack = 0;  // J·s, of limbs that swing on a root that is driven
-  for (double* const sum : {&dead, &slack}) {
-    Playing<float> scene;
-    Character<float> c = scene.character();
-    ASSERT_TRUE(sum == &dead ? c.set_strength(0) : c.set_activation(0));
-    for (int frame = 0; frame < 120; ++frame) {
-      scene.step();
-      EXPECT_EQ(*std::max_element(c.limit().begin() + 6, c.limit().end()), 0) << "nothing pulls";
-      *sum += c.report().kinetic_energy / 60;
-    }
-  }
-  EXPECT_LT(slack, 0.7 * dead);
-}
-
 TEST(Character, MeetsItselfFromNowOnAndSoItDoesRestored) {
   WorldSettings weightless;
   weightless.ground = false;

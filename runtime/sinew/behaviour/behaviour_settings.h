@@ -21,8 +21,8 @@ struct BehaviourSettings {
   double walk_torque = 120;  ///< N·m of a human, likewise while steps of a walk catch it
   /// N of a human, likewise: a tenth of its weight. Beside it, what the animation asks of no floor by itself.
   double walk_force = 75;
-  double fallen_strength = 0;  ///< of the muscles, once it lies; what they lack resists, see set_activation()
-  double let_go = 0.15;        ///< s, in which they come to that, or to what they reach with
+  double fallen_strength = 0.02;  ///< of the muscles, once it lies: limbs do not flail
+  double let_go = 0.15;           ///< s, in which they come to that, or to what they reach with
   /// Of the arms' muscles, while they reach for the ground in a fall; trunk and legs have less. 0: nothing
   /// reaches, as of who is unconscious.
   double reach_strength = 0.7;

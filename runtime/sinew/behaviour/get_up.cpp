@@ -15,10 +15,10 @@ constexpr double kStrong = 0.4;    ///< s, in which the muscles' strength comes 
 constexpr double kSettles = 0.25;  ///< s: gathered, or as near as it will come
 constexpr double kSame = 0.04;     ///< m: another pose has to be nearer by that
 constexpr int kMostGathers = 3;
-constexpr double kMayRise = 0.25, kLost = 0.35;  ///< m off the clip's pose
-constexpr double kFull = 1.5, kWaits = 0.08;     ///< rate and m: see above
-constexpr double kCaught = 1.5;                  ///< s, in which a limb that could not be gathered comes free
-constexpr double kRateTime = 0.08;               ///< s, in which the clip's rate follows
+constexpr double kMayRise = 0.3, kLost = 0.35;  ///< m off the clip's pose
+constexpr double kFull = 1.5, kWaits = 0.08;    ///< rate and m: see above
+constexpr double kCaught = 1.5;                 ///< s, in which a limb that could not be gathered comes free
+constexpr double kRateTime = 0.08;              ///< s, in which the clip's rate follows
 constexpr double kMostWait = 0.8, kMostTime = 7;  ///< s
 constexpr double kEndsWithin = 0.15;              ///< m
 constexpr double kNearlyUp = 0.93;                ///< of the clip: from here on balance may take over
@@ -107,7 +107,7 @@ void GetUp<T>::look(const Character<T>& character) {
 
 template <class T>
 GetUpChoice GetUp<T>::choose() const {
-  return clips_.choose(is_, tried_, from_above(normal_).norm() > kSteep);
+  return clips_.choose(is_, tried_, tried_ != 0 || from_above(normal_).norm() > kSteep);
 }
 
 template <class T>

@@ -196,11 +196,6 @@ T scaled(double limit_at_rest, T strength) {
   return limit_at_rest > 0 && strength > T(0) ? T(limit_at_rest) * strength : T(0);
 }
 
-/// s, of a human: what a muscle that is given nothing resists per rad/s, of its limit. Ten times what the
-/// joints of people at ease lose (a dropped leg swings with 0.28 N·m·s/rad about a knee of 200 N·m; see
-/// Stiffness for one that is tense): who lies is stunned or guards himself, and swings no limb for seconds.
-constexpr double kSlack = 0.005;
-
 }  // namespace
 
 template <class T>
@@ -250,7 +245,6 @@ void CharacterState<T>::refresh_limits() {
     problem.law.torque_minus[dof] += muscle_limit(static_cast<int>(m), muscle.torque_minus);
     problem.law.torque_plus[dof] += muscle_limit(static_cast<int>(m), muscle.torque_plus);
   }
-  refresh_damping();
   problem.law.refresh_presence();
   driven = !is_prop;
   const int first = root_is_kinematic() && tree.type[0] == JointType::kFree ? tree.dof_count(0) : 0;
@@ -258,29 +252,6 @@ void CharacterState<T>::refresh_limits() {
     driven = driven && problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0);
   limited = false;
   for (int i = first > 0 ? 1 : 0; i < tree.bodies; ++i) limited = limited || joint_is_limited(i);
-}
-
-template <class T>
-void CharacterState<T>::refresh_damping() {
-  JointLaw<T>& law = problem.law;
-  const auto slack = [&](int body, int dof, double minus, double plus) {
-    const T strength = T(settings.strength) * joint_strength[body] * (T(1) - activation[body]);
-    const T most = scaled(std::max(minus, plus), strength);
-    if (std::isfinite(most) && !slides(tree, dof)) law.damping[dof] += T(kSlack) * tree.scale.time * most;
-  };
-  for (int i = 0; i < tree.bodies; ++i)
-    for (int k = 0; k < tree.dof_count(i); ++k) {
-      const DofLimits& of = skeleton.joints[i].dofs[k];
-      law.damping[tree.first_dof[i] + k] = T(of.damping);
-      if (activation[i] < T(1)) slack(i, tree.first_dof[i] + k, of.torque_minus, of.torque_plus);
-    }
-  for (std::size_t m = 0; m < skeleton.muscles.size(); ++m) {
-    const Muscle& of = skeleton.muscles[m];
-    const double strength = double(muscle_strength[m]);
-    if (activation[of.joint] < T(1))
-      slack(of.joint, tree.first_dof[of.joint] + of.dof, strength * of.torque_minus,
-            strength * of.torque_plus);
-  }
 }
 
 template <class T>

@@ -212,8 +212,6 @@ struct CharacterState {
   double help_at_most(bool force) const;
   /// Muscle limits of this moment: strengths and the root's drive applied.
   void refresh_limits();
-  /// What joints lose of this moment: muscles that are given less than all of their strength resist.
-  void refresh_damping();
   /// Velocity (m/s, world) of a body's material point, given from the common origin of `problem.kinematics`.
   Vec3<T> point_velocity(int body, const Vec3<T>& point) const {
     const Mat3<T> spin = history.rotation_rate[body] * history.rotation[body].transpose();

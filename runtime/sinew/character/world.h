@@ -227,9 +227,7 @@ class Character {
   /// is no simulated joint.
   Status set_strength(int joint, T strength);
   /// How much of their strength muscles are given at the moment, [joint of the skeleton] 0 to 1: multiplies
-  /// all strengths. For what moves a body beside the host, as behaviours do; strengths are the host's. A
-  /// muscle that is given less is slack, not gone: it resists with 5 ms of what it lacks of its limit,
-  /// N·m·s/rad (of a human; more time of what is larger).
+  /// all strengths. For what moves a body beside the host, as behaviours do; strengths are the host's.
   Status set_activation(std::span<const T> activation);
   /// The same of all joints alike.
   Status set_activation(T activation);
