@@ -107,7 +107,7 @@ TEST(Fall, WhoHasNoArmsLetsGoAtOnce) {
 }
 
 /// Thighs that lie on each other, hands on the trunk: as of a character that always meets itself.
-TEST(Fall, WhoFellMeetsItselfUntilItStands) {
+TEST(Fall, WhoLiesMeetsItself) {
   Falling asked({}, 60, true), by_itself, never;
   for (Falling* body : {&asked, &by_itself, &never}) {
     body->run(0.3);

@@ -123,8 +123,7 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   see_flight(double(h));
   if (acts || last_step_.root_unknown) act(character, jets, h);
   ride(character, jets[0], double(h));
-  // Limbs that nothing keeps apart; where they are caught in each other it gets up through itself.
-  (void)character.meet_itself(fallen() || (is_rising() && report_.tries < 2));
+  (void)character.meet_itself(fallen());  // limbs that nothing keeps apart
   return {};
 }
 
