@@ -224,6 +224,21 @@ TEST(GetUp, WhoFellInAWalkWalksOn) {
   }
 }
 
+/// Without a clip that rises from the back: a body that lies there turns over with the help of who rises.
+TEST(GetUp, WhoLiesOnHisBackRollsOverAndRisesFromHisHands) {
+  for (const double hz : {30.0, 60.0, 120.0})
+    for (const double direction : {0.9 * kPi, kPi, 1.1 * kPi}) {
+      Fallen body;
+      body.h = float(1 / hz);
+      for (Clip& clip : body.asset.clips)
+        if (clip.name == "get_up_supine") clip.name = "none";
+      ASSERT_TRUE(body.behaviour.use_get_ups(body.asset.skeleton, body.asset.clips));
+      body.falls(80, direction);
+      body.run_until_it_stands(16);
+      EXPECT_GT(body.stood, 0) << hz << " Hz, " << direction;
+    }
+}
+
 /// The walk itself has its toes 1 cm deep. Who comes to 1.2 m/s evenly in 0.45 s gathers 5 m/s² at most, and
 /// as much again as legs take his hips up and down: 0.4 m/s in a frame at 30 Hz.
 TEST(GetUp, WhoSetsOffWithAWalkStepsOffWithoutALeapAndPressesNoToesIn) {

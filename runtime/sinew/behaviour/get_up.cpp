@@ -267,7 +267,7 @@ bool GetUp<T>::rolls() const {
   return clips_.variants()[static_cast<std::size_t>(variant_)].rolls;
 }
 
-/// Over onto another side, which needs no balance; then on from there.
+/// Over onto another side, with the help that who rises has; then on from there.
 template <class T>
 GetUpOutcome GetUp<T>::roll(Character<T>& character, std::span<JointJet<T>> jets, double h) {
   off_ = caught_ = 0;

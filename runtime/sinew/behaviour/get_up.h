@@ -30,7 +30,7 @@ enum class GetUpOutcome : std::uint8_t {
   kRises,    ///< follows the clip
   kStuck,    ///< the pose to rise from was not reached
   kTooFar,   ///< it left the clip while rising
-  kTooLong,  ///< waited for the body for 1.5 s, or took 7 s in all (a human's)
+  kTooLong,  ///< waited for the body for 0.8 s, or took 7 s in all (a human's)
   kUp,       ///< the clip is nearly at its end and the body stands as it does there
 };
 
