@@ -76,7 +76,7 @@ template <class T>
 void GetUp<T>::look_at_ground(const Character<T>& character, double ground) {
   ground_ = ground;
   normal_ = Vec3<double>::UnitZ();
-  const BearingGround bears = character.ground();
+  const BearingGround& bears = character.ground();
   if (!(bears.force > 0) || bears.normal.isZero(0)) return;
   const Displacement back = character.displacement().inverse();
   const Vec3<double> normal = back.turn() * bears.normal;
