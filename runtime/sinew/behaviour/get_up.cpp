@@ -38,6 +38,13 @@ Quat<double> slope_of(const Vec3<double>& normal) {
   return Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), normal);
 }
 
+/// World → the frame in which targets are given.
+template <class T>
+Transform<double> from_world(const Character<T>& character) {
+  const Displacement back = character.displacement().inverse();
+  return {back.turn(), {back.x, back.y, back.z}};
+}
+
 template <class T>
 void put_at(const Displacement& place, double ground, const Quat<double>& slope, JointJet<T>& root) {
   const Quat<double> turn = slope * place.turn();
@@ -78,20 +85,19 @@ void GetUp<T>::look_at_ground(const Character<T>& character, double ground) {
   normal_ = Vec3<double>::UnitZ();
   const BearingGround& bears = character.ground();
   if (!(bears.force > 0) || bears.normal.isZero(0)) return;
-  const Displacement back = character.displacement().inverse();
-  const Vec3<double> normal = back.turn() * bears.normal;
+  const Transform<double> back = from_world(character);
+  const Vec3<double> normal = back.rotation * bears.normal;
   if (from_above(normal).norm() < kLevel) return;
   normal_ = normal;
-  const Vec3<double> at = back.turn() * bears.place + Vec3<double>(back.x, back.y, back.z);
+  const Vec3<double> at = back * bears.place;
   ground_ = at.z() + from_above(normal).dot(from_above(at)) / normal.z();
 }
 
 /// m, of the root over its ground.
 template <class T>
 double GetUp<T>::height(const Character<T>& character) const {
-  const Displacement back = character.displacement().inverse();
   const Vec3<double> root = character.model()[0].translation.template cast<double>(),
-                     at = back.turn() * root + Vec3<double>(back.x, back.y, back.z);
+                     at = from_world(character) * root;
   return at.z() - ground_ + from_above(normal_).dot(from_above(at)) / normal_.z();
 }
 
@@ -99,10 +105,10 @@ double GetUp<T>::height(const Character<T>& character) const {
 template <class T>
 void GetUp<T>::look(const Character<T>& character) {
   clips_.points().place(character.model(), is_);
-  const Displacement back = character.displacement().inverse();
-  const Quat<double> turn = back.turn();
+  Transform<double> back = from_world(character);
+  back.translation.z() -= ground_;
   const Quat<double> level = slope_of(normal_).conjugate();
-  for (Vec3<double>& p : is_) p = level * (turn * p + Vec3<double>(back.x, back.y, back.z - ground_));
+  for (Vec3<double>& p : is_) p = level * (back * p);
 }
 
 template <class T>
@@ -121,13 +127,13 @@ bool GetUp<T>::begin(Character<T>& character, double ground) {
   }
   gathers_ = 0;
   elapsed_ = strong_from_ = 0;
-  (void)character.set_root_drive(RootDrive::kFree);
   return gather_to(character, choice);
 }
 
 template <class T>
-bool GetUp<T>::gather_to(const Character<T>& character, const GetUpChoice& choice) {
+bool GetUp<T>::gather_to(Character<T>& character, const GetUpChoice& choice) {
   if (choice.entry < 0) return false;
+  (void)character.set_root_drive(RootDrive::kFree);
   ++gathers_;
   rises_ = false;
   entry_ = choice.entry;

@@ -64,7 +64,7 @@ class GetUp {
   void look_at_ground(const Character<T>& character, double ground);
   void look(const Character<T>& character);
   GetUpChoice choose() const;
-  bool gather_to(const Character<T>& character, const GetUpChoice& choice);
+  bool gather_to(Character<T>& character, const GetUpChoice& choice);
   GetUpOutcome gather(Character<T>& character, std::span<JointJet<T>> jets, double h);
   bool rolls() const;
   GetUpOutcome roll(Character<T>& character, std::span<JointJet<T>> jets, double h);
