@@ -115,7 +115,7 @@ TEST(Fall, WhoLiesMeetsItself) {
     if (body == &never)
       body->behave = [&](std::span<JointJet<float>> wanted) {
         EXPECT_TRUE(never.behaviour.update(never.character(), wanted, never.h));
-        EXPECT_TRUE(never.character().meet_itself(false));
+        EXPECT_TRUE(never.character().set_self_collision(SelfCollision::kOff));
       };
     body->push(120, 1);
     body->run(4);

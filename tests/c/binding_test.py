@@ -388,7 +388,7 @@ class Classes(unittest.TestCase):
         hero = scene.character
         hero.set_strength(0.5)
         hero.set_activation([0.5] * scene.asset.info.joints)
-        hero.meet_itself(True)
+        hero.set_self_collision(sinew.SelfCollision.ON)
         hero.set_detail(2, sinew.Level.PARTIAL, 3, True)
         self.assertEqual((hero.strength, hero.detail), (0.5, (2, sinew.Level.PARTIAL, 3, True)))
         hero.park()

@@ -340,7 +340,7 @@ class Sequence : FuzzMotion {
     const std::uint64_t someone = handle(people_);
     switch (below(10)) {
       case 0:
-        if (below(4) == 0) return sinew_character_meet_itself(someone, index(2));
+        if (below(4) == 0) return sinew_character_set_self_collision(someone, index(2));
         return sinew_character_set_strength(someone, real(0, 2));
       case 1: {
         const std::vector<float> shares(128, rarely() ? 2 : real(0, 1));

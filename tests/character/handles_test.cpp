@@ -54,8 +54,8 @@ TEST(Handles, CharacterOfAWrongIndexIsNullAndRefusesWithAReason) {
     for (const Status& status :
          {nobody.set_target(jets), nobody.reset(), nobody.set_strength(1), nobody.set_strength(0, 1),
           nobody.set_muscle_strength(0, 1), nobody.set_group_strength("arm", 1), nobody.set_activation(1),
-          nobody.meet_itself(true), nobody.set_root_drive(RootDrive::kFree), nobody.set_detail({}),
-          nobody.apply_impulse(0, at, push), nobody.apply_force(0, at, push)})
+          nobody.set_self_collision(SelfCollision::kOn), nobody.set_root_drive(RootDrive::kFree),
+          nobody.set_detail({}), nobody.apply_impulse(0, at, push), nobody.apply_force(0, at, push)})
       expect_refused(status, -1, "no such character");
   }
 }

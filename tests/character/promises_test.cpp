@@ -134,11 +134,11 @@ TEST(Character, MeetsItselfFromNowOnAndSoItDoesRestored) {
     return c.report().contacts;
   };
   EXPECT_EQ(contacts(), 0);
-  ASSERT_TRUE(c.meet_itself(true));
+  ASSERT_TRUE(c.set_self_collision(SelfCollision::kOn));
   EXPECT_GT(contacts(), 0);
   std::vector<std::byte> saved(std::size_t(1) << 16);
   const std::size_t bytes = scene.world.save(saved);
-  ASSERT_TRUE(c.meet_itself(false));
+  ASSERT_TRUE(c.set_self_collision(SelfCollision::kOff));
   EXPECT_EQ(contacts(), 0);
   ASSERT_TRUE(scene.world.restore(std::span(saved).first(bytes)));
   EXPECT_GT(contacts(), 0);

@@ -123,7 +123,9 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   see_flight(double(h));
   if (acts || last_step_.root_unknown) act(character, jets, h);
   ride(character, jets[0], double(h));
-  (void)character.meet_itself(fallen());  // limbs that nothing keeps apart
+  (void)character.set_self_collision(fallen()      ? SelfCollision::kOn   // nothing else keeps limbs apart
+                                     : is_rising() ? SelfCollision::kOff  // clips do not know what is caught
+                                                   : SelfCollision::kAsCreated);
   return {};
 }
 

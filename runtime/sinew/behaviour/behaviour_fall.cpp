@@ -164,7 +164,7 @@ void Behaviour<T>::knock_down(Character<T> character) {
 template <class T>
 void Behaviour<T>::stand(Character<T> character) {
   (void)character.set_activation(T(1));
-  (void)character.meet_itself(false);
+  (void)character.set_self_collision(SelfCollision::kAsCreated);
   (void)character.set_root_drive(RootDrive::kGrounded);
   (void)character.set_help(-1, -1);
   report_ = {};

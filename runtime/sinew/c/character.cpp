@@ -200,8 +200,11 @@ sinew_status sinew_character_set_activation(sinew_character character, const flo
   });
 }
 
-sinew_status sinew_character_meet_itself(sinew_character character, int32_t meets) {
-  return change(character, [&](Character<float> c) { return c.meet_itself(meets != 0); });
+sinew_status sinew_character_set_self_collision(sinew_character character, sinew_self_collision collision) {
+  if (collision < SINEW_SELF_COLLISION_AS_CREATED || collision > SINEW_SELF_COLLISION_OFF)
+    return fail(SINEW_INVALID_ARGUMENT, "no such self collision", collision);
+  return change(character,
+                [&](Character<float> c) { return c.set_self_collision(SelfCollision(collision)); });
 }
 
 sinew_status sinew_character_set_tone(sinew_character character, sinew_tone tone) {

@@ -40,6 +40,15 @@ enum sinew_tone_values {
   SINEW_TONE_BRACED = 3    ///< expects the blow
 };
 
+/// Whether limbs meet each other.
+typedef int32_t sinew_self_collision;
+/// Values of sinew_self_collision.
+enum sinew_self_collision_values {
+  SINEW_SELF_COLLISION_AS_CREATED = 0,  ///< as the settings say
+  SINEW_SELF_COLLISION_ON = 1,
+  SINEW_SELF_COLLISION_OFF = 2
+};
+
 /// What a character begins with. Fields mean what those of CharacterSettings do.
 typedef struct sinew_character_settings {
   uint32_t size;           ///< bytes of this struct, as the caller knows it
@@ -172,9 +181,9 @@ SINEW_API sinew_status sinew_character_set_group_strength(sinew_character charac
 /// to 1: multiplies all strengths. For what moves a body beside the host, as behaviours do.
 SINEW_API sinew_status sinew_character_set_activation(sinew_character character, const float* activation,
                                                       int32_t count);
-/// Whether limbs meet each other from now on, where the settings do not ask for it anyhow (flag). Behaviours
-/// ask for it of who fell.
-SINEW_API sinew_status sinew_character_meet_itself(sinew_character character, int32_t meets);
+/// Whether limbs meet each other from now on. Behaviours ask for it of who fell, and not of who gets up.
+SINEW_API sinew_status sinew_character_set_self_collision(sinew_character character,
+                                                          sinew_self_collision collision);
 /// Tone of all muscles. The first that is not rigid allocates; so with the others.
 SINEW_API sinew_status sinew_character_set_tone(sinew_character character, sinew_tone tone);
 /// The same of the muscles of a joint and of those below it.

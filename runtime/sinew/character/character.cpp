@@ -135,9 +135,10 @@ Status Character<T>::set_activation(T activation) {
 }
 
 template <class T>
-Status Character<T>::meet_itself(bool meets) {
+Status Character<T>::set_self_collision(SelfCollision collision) {
   if (!state_) return nobody();
-  state_->meets_itself = meets;
+  if (collision > SelfCollision::kOff) return Status::error(Code::kInvalidArgument, "no such self collision");
+  state_->self_collision = collision;
   return {};
 }
 

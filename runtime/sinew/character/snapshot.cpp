@@ -242,14 +242,16 @@ void visit_tone(CharacterState<T>& s, ByteStream& stream) {
 
 template <class T>
 void visit_state(CharacterState<T>& s, ByteStream& stream) {
-  constexpr std::uint8_t kDisplaced = 0x80, kMeetsItself = 0x40;
+  constexpr std::uint8_t kDisplaced = 0x80, kSelfCollision = 0x20, kDrive = 0x1f;
   std::uint8_t root = static_cast<std::uint8_t>(s.settings.root) |
                       (s.grounding.by.any() ? kDisplaced : std::uint8_t{0}) |
-                      (s.meets_itself ? kMeetsItself : std::uint8_t{0});
+                      static_cast<std::uint8_t>(static_cast<int>(s.self_collision) * kSelfCollision);
   stream.value("root drive", root);
   const bool displaced = (root & kDisplaced) != 0;
-  if (stream.reading()) s.meets_itself = (root & kMeetsItself) != 0;
-  root &= static_cast<std::uint8_t>(~(kDisplaced | kMeetsItself));
+  const int self_collision = (root & ~kDisplaced) / kSelfCollision;
+  if (stream.reading() && self_collision <= static_cast<int>(SelfCollision::kOff))
+    s.self_collision = static_cast<SelfCollision>(self_collision);
+  root &= kDrive;
   stream.flag("out of the world", s.parked);
   if (stream.reading() && root <= static_cast<std::uint8_t>(RootDrive::kGrounded))
     s.settings.root = static_cast<RootDrive>(root);

@@ -131,7 +131,7 @@ struct CharacterState {
 
   CharacterSettings settings;
   Grounding<T> grounding;
-  bool meets_itself = false;  ///< see Character::meet_itself
+  SelfCollision self_collision = SelfCollision::kAsCreated;
   bool is_prop = false;       ///< or a body of particles: nothing animates it
   bool is_particles = false;  ///< every body but the fixed root is a particle
   CharacterDetail detail;
@@ -203,7 +203,10 @@ struct CharacterState {
     return own > T(0) ? T(settings.strength) * own : T(0);  // what is dead stays dead in who only plays
   }
   /// Whether its limbs collide with each other.
-  bool has_self_collision() const { return settings.self_collision || meets_itself; }
+  bool has_self_collision() const {
+    return self_collision == SelfCollision::kAsCreated ? settings.self_collision
+                                                       : self_collision == SelfCollision::kOn;
+  }
   /// What a limit (N·m) of one of the skeleton's muscles is at its strength, its joint's and the character's.
   T muscle_limit(int muscle, double limit_at_rest) const;
   /// By which that of a grounded root is multiplied.

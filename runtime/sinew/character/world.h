@@ -43,6 +43,13 @@ enum class RootDrive : std::uint8_t {
                ///< most, and with what the animation's accelerations ask of no floor that there could be
 };
 
+/// Whether a character's limbs meet each other.
+enum class SelfCollision : std::uint8_t {
+  kAsCreated,  ///< as CharacterSettings::self_collision says
+  kOn,
+  kOff,
+};
+
 /// Where a grounded character follows its animation: turned about the world's vertical, then moved.
 struct Displacement {
   double x = 0;    ///< m, world
@@ -93,7 +100,7 @@ struct CharacterSettings {
   double strength = 1;          ///< scales every muscle; 0 = ragdoll, infinity = pure playback
   Tone tone = Tone::kRigid;     ///< how far all muscles give way below their limits, see set_tone()
   bool ground_contact = true;   ///< meets what is static: ground, obstacles, the host's shapes
-  bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest; meet_itself()
+  bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
   CharacterDetail detail;       ///< see Character::set_detail()
   std::uint32_t layers = 1;     ///< bits by which queries (queries.h) and `meets` choose
   /// Of characters, props and particles it touches those with one of these bits in their layers, that would
@@ -231,9 +238,9 @@ class Character {
   Status set_activation(std::span<const T> activation);
   /// The same of all joints alike.
   Status set_activation(T activation);
-  /// Whether limbs meet each other from now on where CharacterSettings::self_collision does not ask for it
-  /// anyhow. For what moves a body beside the host, too: behaviours ask for it of who fell.
-  Status meet_itself(bool meets);
+  /// Whether limbs meet each other from now on. For what moves a body beside the host, too: behaviours ask
+  /// for it of who fell, and not of who gets up. Refuses what is none of the values.
+  Status set_self_collision(SelfCollision collision);
   /// Strength of one of Skeleton::muscles, ≥ 0; the character's and the joint's multiply it.
   Status set_muscle_strength(int muscle, T strength);
   /// The same of all muscles of a group (Muscle::group); refuses one that no muscle has.

@@ -13,7 +13,7 @@ numpy's where numpy is installed, else memoryviews (of poses one for each joint)
 the last step left when they are asked for again, and keep that memory while they live, also after close()."""
 from ._abi import (AnchorKind, BehaviourEventKind, BehaviourOrder, BehaviourReason, BehaviourState, BlendMode, BodyKind, ContactPhase, CurveValue,
                    EventKind, FootHold, GetUpPolicy, GroundKind, JointType, Level, LogLevel, LoopKind, NodeType, ParameterType, Role, RootDrive,
-                   Shape, SnapshotPart, Status, Tone)
+                   SelfCollision, Shape, SnapshotPart, Status, Tone)
 from ._core import Error, check, jets_for, lib
 from .assets import (Asset, Feet, Foot, Graph, Layer, Look, Transition, ease, ground_hit, place_jets, smooth, split_root)
 from .hooks import set_log

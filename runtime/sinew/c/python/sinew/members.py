@@ -74,9 +74,9 @@ class Character(_Affected):
         count = len(activation)
         self._call(lib.sinew_character_set_activation, (ctypes.c_float * count)(*activation), count)
 
-    def meet_itself(self, meets):
-        """Whether limbs meet each other from now on, where the settings do not ask for it anyhow."""
-        self._call(lib.sinew_character_meet_itself, bool(meets))
+    def set_self_collision(self, collision):
+        """Whether limbs meet each other from now on (SelfCollision)."""
+        self._call(lib.sinew_character_set_self_collision, collision)
 
     @property
     def strength(self):
