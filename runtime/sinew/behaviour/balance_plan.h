@@ -15,7 +15,11 @@ namespace sinew {
 struct BalanceLaw {
   double gain = 2;             ///< 1/s, with which ξ is brought back
   double margin = 0.01;        ///< m, that pressing stays inside the soles
+  /// Of the way from where ξ is at rest to the edge of the soles: people step when it is further out, though
+  /// they could press it back. That much of their feet they lean over (King, Judge and Wolfson, 1994).
+  double functional = 0.45;
   double step_time = 0.30;     ///< s from lifting a foot to putting it down
+  double join_time = 0.20;     ///< s, likewise of one that comes beside the other
   double longest_step = 1.05;  ///< m, between the ankles
   double apart = 0.12;         ///< m, least to its own side of the other foot
   double sideways = 0.65;      ///< rad off straight ahead or back, from which a push is one to the side

@@ -32,6 +32,7 @@ constexpr double kDrop = 3, kRise = 12;        ///< m/s², of the body: feet tha
 constexpr double kLands = 0.2, kGivesIn = 25;  ///< s, m/s²: likewise of legs that take up a fall
 constexpr double kUp = 0.03;                   ///< m below its height, at which they have
 constexpr double kMisplaced = 0.03, kMisturned = 0.2;  ///< m, rad: a foot that is put back
+constexpr double kFree = 0.003;  ///< m over the ground: a foot that bears nothing
 constexpr double kShifted = 0.15;                      ///< m/s, from which the other foot bears all
 constexpr double kWalks = 0.25;                        ///< m/s, of an animation that does not stand
 constexpr double kStops = 0.6;                         ///< of its pace: an animation that walks no longer
@@ -66,7 +67,7 @@ Behaviour<T>::Behaviour(const Skeleton& skeleton, const BehaviourSettings& setti
   weight_ = body_.total_mass / kMass;
   forward_ = skeleton.joints[0].rest.rotation.conjugate() * Vec3<double>::UnitX();
   for (double* length : {&law_.margin, &law_.longest_step, &law_.apart, &law_.lift}) *length *= unit_;
-  law_.step_time *= std::sqrt(unit_);
+  for (double* time : {&law_.step_time, &law_.join_time}) *time *= std::sqrt(unit_);
   law_.gain /= std::sqrt(unit_);
   reach_.prepare(skeleton, settings_, unit_);
   const std::size_t joints = skeleton.joints.size();
@@ -346,7 +347,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   if (landing_ == Landing::kLands) give_in(is, jets[0]);
   if (walks_ && clip_velocity_.norm() < kStops * pace_) stop_walking(character, is, jets);
   if (walks_) return walk_on(character, world, jets[0], h);
-  if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time) end_step(is, jets);
+  if (report_.state == BehaviourState::kStep && swing_time_ >= swing_lasts_) end_step(is, jets);
   const Vec2 off = from_above(is.mass.place) - plan_.place,
              faster = from_above(is.mass.velocity) - plan_.velocity;
   if (off.norm() > kOffPlan * unit_ || faster.norm() > kOffPlanSpeed * std::sqrt(unit_)) {
@@ -371,7 +372,10 @@ void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is)
   report_.capture_depth = support_.depth(capture);
   if (landing_ == Landing::kLands && height_.rate < -kStill * std::sqrt(unit_))
     return;  // both legs are needed
-  if (report_.capture_depth < 0) {
+  const Vec2 rest = goal();
+  const bool leans = report_.steps == 0 && landing_ == Landing::kNone &&
+                     support_.depth(rest + (capture - rest) / law_.functional) < 0;
+  if (report_.capture_depth < 0 || leans) {
     home_ = -1;
     const int left = settings_.most_steps - report_.steps;
     if (out_of_reach(-report_.capture_depth, frequency_, left, law_))
@@ -473,11 +477,24 @@ Feet Behaviour<T>::feet_now(const Transform<double>& root) const {
           portable::atan2(ahead.y(), ahead.x())};
 }
 
+/// Whether a foot bears nothing, as of who is tipped over the other one, and stands away from it.
+template <class T>
+bool Behaviour<T>::can_join(int foot, const MeasuredBody& is) const {
+  const auto side = static_cast<std::size_t>(foot);
+  return is.lowest[side] - body_.lowest_of(side, foot_[side]) > kFree * unit_ &&
+         from_above(foot_[0].translation - foot_[1].translation).norm() > law_.apart + kMisplaced * unit_;
+}
+
+/// What bears the body can't be lifted: where the other foot is free it first comes beside it and takes over,
+/// as people's do.
 template <class T>
 void Behaviour<T>::begin_step(const MeasuredBody& is) {
-  const int foot = stepping_foot(feet_now(is.root), plan_.capture_point(frequency_), support_.middle(), law_);
+  int foot = stepping_foot(feet_now(is.root), plan_.capture_point(frequency_), support_.middle(), law_);
+  const bool joins = can_join(1 - foot, is);
+  if (joins) foot = 1 - foot;
   ++report_.steps;
   lift(foot, foot_[static_cast<std::size_t>(foot)], is);
+  if (joins) swing_lasts_ = law_.join_time;
 }
 
 /// A step with a foot, from where it is.
@@ -486,6 +503,7 @@ void Behaviour<T>::lift(int foot, const Transform<double>& from, const MeasuredB
   report_.state = BehaviourState::kStep;
   swing_ = foot;
   swing_time_ = 0;
+  swing_lasts_ = law_.step_time;
   lifted_ = from;
   choose_support(is);
 }
@@ -555,9 +573,9 @@ void Behaviour<T>::move_swing(double h) {
   const auto side = static_cast<std::size_t>(swing_);
   if (home_ >= 0 && support_.depth(plan_.capture_point(frequency_)) < 0)
     home_ = -1;                                                  // it has to catch the body
-  if (home_ >= 0 || swing_time_ > 0.8 * law_.step_time) return;  // it keeps its landing place
+  if (home_ >= 0 || swing_time_ > 0.8 * swing_lasts_) return;  // it keeps its landing place
   const Vec2 capture = plan_.capture_point(frequency_);
-  const Vec2 lands = capture_point_after(capture, frequency_, law_.step_time - swing_time_, support_);
+  const Vec2 lands = capture_point_after(capture, frequency_, swing_lasts_ - swing_time_, support_);
   const Vec2 to = within_reach(feet_now({root_before_, {}}), swing_, lands + clip_foot_[side], law_);
   foot_[side].translation.z() += rises_along(to - from_above(foot_[side].translation));
   foot_[side].translation.x() = to.x();
@@ -582,7 +600,7 @@ void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
     stance.ankle[side] = still<double>(foot_[side].translation);
     stance.foot[side] = foot_[side].rotation;
     if (static_cast<int>(side) != swing_) continue;
-    const double time = law_.step_time;
+    const double time = swing_lasts_;
     const TimeJet<double> u{std::clamp(swing_time_ / time, 0.0, 1.0),
                             swing_time_ > 0 && swing_time_ < time ? 1 / time : 0, 0};
     const TimeJet<double> share = soft_step(u);

@@ -207,6 +207,7 @@ class Behaviour {
   void give_up(Character<T>& character);
   void begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets);
   void choose_support(const MeasuredBody& is);
+  bool can_join(int foot, const MeasuredBody& is) const;
   void begin_step(const MeasuredBody& is);
   void lift(int foot, const Transform<double>& from, const MeasuredBody& is);
   void help_trunk(Character<T>& character) const;
@@ -311,7 +312,7 @@ class Behaviour {
   std::array<Transform<double>, 2> clip_ankle_;
   int swing_ = -1, home_ = -1;  ///< the foot in the air; the one that is put back
   Sole only_;                   ///< of the foot that stands while the other is put back
-  double swing_time_ = 0;
+  double swing_time_ = 0, swing_lasts_ = 0;  ///< s
   Transform<double> lifted_;  ///< where the foot that swings left the ground
   Vec3<double> turn_ = Vec3<double>::Zero(), turn_rate_ = Vec3<double>::Zero(),
                turn_acceleration_ = Vec3<double>::Zero(), spin_ = Vec3<double>::Zero();

@@ -118,6 +118,7 @@ void Behaviour<T>::visit(ByteStream& stream) {
   stream.value("foot in the air", swing_);
   stream.value("foot that is put back", home_);
   stream.value("time of the swing", swing_time_);
+  stream.value("duration of the swing", swing_lasts_);
   stream.flag("walks on", walks_);
   stream.value("standing foot of the walk", stance_);
   stream.value("pace of the walk", pace_);
