@@ -11,6 +11,7 @@ namespace {
 
 // Of a human.
 constexpr double kFlies = 0.05;     ///< s that nothing bears it, from which it flies
+constexpr double kHops = 0.1;       ///< s, likewise of who steps: some steps are leaps
 constexpr double kFree = 0.25;      ///< of what a step of free fall adds to its speed
 constexpr double kTucked = 0.05;    ///< m, that legs are shorter than its animation's: knees that may bend
 constexpr double kAhead = 0.3;      ///< m, that feet are ahead of it at most
@@ -30,7 +31,8 @@ void Behaviour<T>::see_flight(double h) {
 /// Who walks comes down in his next step.
 template <class T>
 bool Behaviour<T>::flies() const {
-  return airborne_ > kFlies * std::sqrt(unit_) && !clip_walks();
+  const double hops = report_.state == BehaviourState::kStep ? kHops : kFlies;
+  return airborne_ > hops * std::sqrt(unit_) && !clip_walks();
 }
 
 /// Nothing that it does moves its centre of mass.
