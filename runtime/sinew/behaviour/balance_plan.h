@@ -13,8 +13,8 @@ namespace sinew {
 
 /// Of a human; a figure's by its size.
 struct BalanceLaw {
-  double gain = 2;             ///< 1/s, with which ξ is brought back
-  double margin = 0.01;        ///< m, that pressing stays inside the soles
+  double gain = 2;       ///< 1/s, with which ξ is brought back
+  double margin = 0.01;  ///< m, that pressing stays inside the soles
   /// Of the way from where ξ is at rest to the edge of the soles: people step when it is further out, though
   /// they could press it back. That much of their feet they lean over (King, Judge and Wolfson, 1994).
   double functional = 0.45;

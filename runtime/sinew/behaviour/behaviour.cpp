@@ -28,11 +28,12 @@ constexpr double kFallen = 0.6;     ///< of the root's height
 constexpr double kSquats = 0.4;     ///< likewise, while it lands
 constexpr double kUpright = 0.77;   ///< cos 40°: who tilts further from the clip falls
 constexpr double kOffPlan = 0.1, kOffPlanSpeed = 1;  ///< m, m/s: a plan that fails is made again
+constexpr double kSeen = 0.03, kTrusted = 0.5;       ///< s; how far a step goes by where the body is instead
 constexpr double kDrop = 3, kRise = 12;        ///< m/s², of the body: feet that bear nothing can't press
 constexpr double kLands = 0.2, kGivesIn = 25;  ///< s, m/s²: likewise of legs that take up a fall
 constexpr double kUp = 0.03;                   ///< m below its height, at which they have
 constexpr double kMisplaced = 0.03, kMisturned = 0.2;  ///< m, rad: a foot that is put back
-constexpr double kFree = 0.003;  ///< m over the ground: a foot that bears nothing
+constexpr double kFree = 0.003;                        ///< m over the ground: a foot that bears nothing
 constexpr double kShifted = 0.15;                      ///< m/s, from which the other foot bears all
 constexpr double kWalks = 0.25;                        ///< m/s, of an animation that does not stand
 constexpr double kStops = 0.6;                         ///< of its pace: an animation that walks no longer
@@ -354,6 +355,9 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     plan_.place = from_above(is.mass.place);
     plan_.velocity = from_above(is.mass.velocity);
   }
+  const Vec2 ahead =
+      from_above(is.mass.place + is.mass.velocity / frequency_) - plan_.capture_point(frequency_);
+  ahead_ -= portable::expm1(-h / (kSeen * std::sqrt(unit_))) * (ahead - ahead_);
   if (report_.state == BehaviourState::kBalance) keep_balance(character, is);
   if (report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep) move_plan(h);
 }
@@ -454,6 +458,7 @@ void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T
   sets_off_ = 0;
   swing_ = home_ = -1;
   plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
+  ahead_.setZero();
   frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z() - level_, 0.3 * unit_));
   begin_trunk(is, jets[0]);
   choose_support(is);
@@ -572,9 +577,9 @@ void Behaviour<T>::move_swing(double h) {
   swing_time_ += h;
   const auto side = static_cast<std::size_t>(swing_);
   if (home_ >= 0 && support_.depth(plan_.capture_point(frequency_)) < 0)
-    home_ = -1;                                                  // it has to catch the body
+    home_ = -1;                                                // it has to catch the body
   if (home_ >= 0 || swing_time_ > 0.8 * swing_lasts_) return;  // it keeps its landing place
-  const Vec2 capture = plan_.capture_point(frequency_);
+  const Vec2 capture = plan_.capture_point(frequency_) + kTrusted * ahead_;
   const Vec2 lands = capture_point_after(capture, frequency_, swing_lasts_ - swing_time_, support_);
   const Vec2 to = within_reach(feet_now({root_before_, {}}), swing_, lands + clip_foot_[side], law_);
   foot_[side].translation.z() += rises_along(to - from_above(foot_[side].translation));

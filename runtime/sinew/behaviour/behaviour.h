@@ -310,10 +310,11 @@ class Behaviour {
   double slip_ridden_ = 0, slip_led_ = 0;
   bool led_ = false;  ///< the host's animation goes along by itself
   std::array<Transform<double>, 2> clip_ankle_;
-  int swing_ = -1, home_ = -1;  ///< the foot in the air; the one that is put back
-  Sole only_;                   ///< of the foot that stands while the other is put back
+  int swing_ = -1, home_ = -1;               ///< the foot in the air; the one that is put back
+  Sole only_;                                ///< of the foot that stands while the other is put back
+  Vec2 ahead_ = Vec2::Zero();                ///< m, of late: of the body's capture point, of the plan's
   double swing_time_ = 0, swing_lasts_ = 0;  ///< s
-  Transform<double> lifted_;  ///< where the foot that swings left the ground
+  Transform<double> lifted_;                 ///< where the foot that swings left the ground
   Vec3<double> turn_ = Vec3<double>::Zero(), turn_rate_ = Vec3<double>::Zero(),
                turn_acceleration_ = Vec3<double>::Zero(), spin_ = Vec3<double>::Zero();
   TimeJet<double> height_{0.0};

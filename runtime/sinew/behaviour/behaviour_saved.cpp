@@ -114,6 +114,7 @@ void Behaviour<T>::visit(ByteStream& stream) {
   visit_report(report_, stream);
   visit_pendulum("plan", plan_, stream);
   stream.value("frequency of the plan", frequency_);
+  for (int a = 0; a < 2; ++a) stream.value("capture point ahead of the plan's", ahead_[a]);
   for (Transform<double>& foot : foot_) visit_transform("foot", foot, stream);
   stream.value("foot in the air", swing_);
   stream.value("foot that is put back", home_);
