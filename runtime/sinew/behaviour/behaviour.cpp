@@ -28,7 +28,7 @@ constexpr double kFallen = 0.6;     ///< of the root's height
 constexpr double kSquats = 0.4;     ///< likewise, while it lands
 constexpr double kUpright = 0.77;   ///< cos 40°: who tilts further from the clip falls
 constexpr double kOffPlan = 0.1, kOffPlanSpeed = 1;  ///< m, m/s: a plan that fails is made again
-constexpr double kSeen = 0.03, kTrusted = 0.5;       ///< s; how far a step goes by where the body is instead
+constexpr double kSeen = 0.03, kTrusted = 0.5;       ///< s; how far feet go by where the body is instead
 constexpr double kDrop = 3, kRise = 12;        ///< m/s², of the body: feet that bear nothing can't press
 constexpr double kLands = 0.2, kGivesIn = 25;  ///< s, m/s²: likewise of legs that take up a fall
 constexpr double kUp = 0.03;                   ///< m below its height, at which they have
@@ -371,7 +371,7 @@ void Behaviour<T>::help_trunk(Character<T>& character) const {
 /// While both feet stand: a step if pressing does not reach, and else back to the animation.
 template <class T>
 void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is) {
-  const Vec2 capture = plan_.capture_point(frequency_);
+  const Vec2 capture = this->capture();
   const double speed = plan_.velocity.norm() / std::sqrt(unit_);
   report_.capture_depth = support_.depth(capture);
   if (landing_ == Landing::kLands && height_.rate < -kStill * std::sqrt(unit_))
@@ -394,6 +394,12 @@ void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is)
   home_ = misplaced();
   if (home_ < 0) return may_finish(is) ? finish(character) : void();
   find_only();
+}
+
+/// The plan's, as far as the body is where its plan is.
+template <class T>
+Vec2 Behaviour<T>::capture() const {
+  return plan_.capture_point(frequency_) + kTrusted * ahead_;
 }
 
 template <class T>
@@ -494,7 +500,7 @@ bool Behaviour<T>::can_join(int foot, const MeasuredBody& is) const {
 /// as people's do.
 template <class T>
 void Behaviour<T>::begin_step(const MeasuredBody& is) {
-  int foot = stepping_foot(feet_now(is.root), plan_.capture_point(frequency_), support_.middle(), law_);
+  int foot = stepping_foot(feet_now(is.root), capture(), support_.middle(), law_);
   const bool joins = can_join(1 - foot, is);
   if (joins) foot = 1 - foot;
   ++report_.steps;
@@ -576,10 +582,9 @@ template <class T>
 void Behaviour<T>::move_swing(double h) {
   swing_time_ += h;
   const auto side = static_cast<std::size_t>(swing_);
-  if (home_ >= 0 && support_.depth(plan_.capture_point(frequency_)) < 0)
-    home_ = -1;                                                // it has to catch the body
-  if (home_ >= 0 || swing_time_ > 0.8 * swing_lasts_) return;  // it keeps its landing place
-  const Vec2 capture = plan_.capture_point(frequency_) + kTrusted * ahead_;
+  if (home_ >= 0 && support_.depth(capture()) < 0) home_ = -1;  // it has to catch the body
+  if (home_ >= 0 || swing_time_ > 0.8 * swing_lasts_) return;   // it keeps its landing place
+  const Vec2 capture = this->capture();
   const Vec2 lands = capture_point_after(capture, frequency_, swing_lasts_ - swing_time_, support_);
   const Vec2 to = within_reach(feet_now({root_before_, {}}), swing_, lands + clip_foot_[side], law_);
   foot_[side].translation.z() += rises_along(to - from_above(foot_[side].translation));
