@@ -56,6 +56,41 @@ TEST(Behaviour, ASmallPushIsPressedBackWithoutAStep) {
   }
 }
 
+/// People step from 23 N·s ahead, 19 to the side and 17 backwards, though their feet could press it back
+/// (tools/study/behaviour/push_map.h).
+TEST(Behaviour, APushThatFeetCouldHoldIsCaughtByAStepAsPeopleDo) {
+  for (const double direction : {0.0, kBack, kLeft, -kLeft}) {
+    Balancing body;
+    EXPECT_EQ(body.pushed(27, direction), BehaviourState::kClip) << direction;
+    EXPECT_GE(body.steps, 1) << direction;
+  }
+}
+
+/// Pushed to the left it tips over its left foot, which bears it all and can't be lifted.
+TEST(Behaviour, TheFootThatBearsNothingComesBesideTheOtherFirst) {
+  for (const double side : {kLeft, -kLeft}) {
+    Balancing body;
+    const auto height = [&](Role role) {
+      const auto foot = static_cast<std::size_t>(body.asset.skeleton.find(role));
+      return body.character().model()[foot].translation.z();
+    };
+    const Role bears = side > 0 ? Role::kFootL : Role::kFootR, free = side > 0 ? Role::kFootR : Role::kFootL;
+    body.run(0.3);
+    const float down = height(free);
+    body.push(38, side);
+    float lifted = 0;
+    while (body.behaviour.report().steps < 2 && body.behaviour.report().time < 1) {
+      body.step();
+      EXPECT_LT(height(bears), down + 0.02f) << side;
+      lifted = std::max(lifted, height(free) - down);
+    }
+    EXPECT_EQ(body.behaviour.report().steps, 2) << side;
+    EXPECT_GT(lifted, 0.02f) << side;
+    body.run(8);
+    EXPECT_EQ(body.behaviour.state(), BehaviourState::kClip) << side;
+  }
+}
+
 TEST(Behaviour, APushThatFeetCannotHoldIsCaughtByAStepAndTheFootIsPutBack) {
   Balancing body;
   EXPECT_EQ(body.pushed(40, 0), BehaviourState::kClip);

@@ -24,8 +24,9 @@ struct Fallen : Pushed {
   double decided = -1, stood = -1;  ///< s
 
   explicit Fallen(const BehaviourSettings& settings = {}, float ground_height = 0,
-                  const char* plays = "stand")
-      : Pushed(plays, RootDrive::kGrounded, ground_height), behaviour(asset.skeleton, settings, status) {
+                  const char* plays = "stand", bool self_collision = false)
+      : Pushed(plays, RootDrive::kGrounded, ground_height, self_collision),
+        behaviour(asset.skeleton, settings, status) {
     EXPECT_TRUE(status) << status.reason;
     EXPECT_TRUE(behaviour.use_get_ups(asset.skeleton, asset.clips));
     behave = [this](std::span<JointJet<float>> wanted) {
@@ -225,6 +226,20 @@ TEST(GetUp, WhoFellInAWalkWalksOn) {
 }
 
 /// Without a clip that rises from the back: a body that lies there turns over with the help of who rises.
+/// Limbs that cross on the way do not catch each other: it rises as who never meets itself does.
+TEST(GetUp, PassesThroughItselfWhateverItsHostAsksFor) {
+  Fallen asked({}, 0, "stand", true), never;
+  for (Fallen* body : {&asked, &never}) {
+    body->falls(120, 1);
+    while (!body->behaviour.is_rising() && body->time() < 8) body->step();
+    while (body->behaviour.is_rising() && body->time() < 16) body->step();
+  }
+  EXPECT_GT(asked.decided, 0);
+  EXPECT_EQ(asked.time(), never.time());
+  for (std::size_t joint = 0; joint < asked.character().model().size(); ++joint)
+    EXPECT_EQ(asked.character().model()[joint].translation, never.character().model()[joint].translation);
+}
+
 TEST(GetUp, WhoLiesOnHisBackRollsOverAndRisesFromHisHands) {
   for (const double hz : {30.0, 60.0, 120.0})
     for (const double direction : {0.9 * kPi, kPi, 1.1 * kPi}) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "character/scenes.h"
 
@@ -114,34 +115,60 @@ TEST(Character, ActivationMultipliesStrengthsAndRefusesWhatIsNoShare) {
   EXPECT_EQ(c.limit()[at(3)], full[at(3)]);
 }
 
-TEST(Character, MeetsItselfFromNowOnAndSoItDoesRestored) {
-  WorldSettings weightless;
-  weightless.ground = false;
-  weightless.gravity.setZero();
-  Playing<float> scene(weightless);
-  Character<float> c = scene.character();
-  std::vector<JointJet<float>> crossed = idle<float>(scene.skeleton, 0);
-  const auto thigh = std::find_if(scene.skeleton.joints.begin(), scene.skeleton.joints.end(),
-                                  [](const Joint& joint) { return joint.name.find("thigh") == 0; });
-  ASSERT_NE(thigh, scene.skeleton.joints.end());
-  JointJet<float>& jet = crossed[std::size_t(thigh - scene.skeleton.joints.begin())];
-  jet.rotation = jet.rotation * rotation_exp<float>(Vec3<float>(-0.3f, 0, 0));
-  const auto contacts = [&] {
-    EXPECT_TRUE(c.set_target(crossed));
-    EXPECT_TRUE(c.reset());
-    EXPECT_TRUE(c.set_strength(0.f));
-    EXPECT_TRUE(scene.world.step(1 / 60.f));
-    return c.report().contacts;
-  };
+/// Limp and weightless, its legs crossed.
+struct Crossed : ::testing::Test {
+  Skeleton skeleton = fixtures::humanoid();
+  std::vector<JointJet<float>> jets = idle<float>(skeleton, 0);
+  std::optional<World<float>> world;
+
+  Character<float> add(bool self_collision) {
+    WorldSettings settings;
+    settings.ground = false;
+    settings.gravity.setZero();
+    world.emplace(settings);
+    Status status;
+    CharacterSettings limp;
+    limp.strength = 0;
+    limp.self_collision = self_collision;
+    EXPECT_EQ(world->add_character(skeleton, limp, status), 0);
+    const auto thigh = std::find_if(skeleton.joints.begin(), skeleton.joints.end(),
+                                    [](const Joint& joint) { return joint.name.find("thigh") == 0; });
+    EXPECT_NE(thigh, skeleton.joints.end());
+    JointJet<float>& jet = jets[std::size_t(thigh - skeleton.joints.begin())];
+    jet.rotation = jet.rotation * rotation_exp<float>(Vec3<float>(-0.3f, 0, 0));
+    return world->character(0);
+  }
+  int contacts() {
+    EXPECT_TRUE(world->character(0).set_target(jets));
+    EXPECT_TRUE(world->character(0).reset());
+    EXPECT_TRUE(world->step(1 / 60.f));
+    return world->character(0).report().contacts;
+  }
+};
+
+TEST_F(Crossed, MeetsItselfFromNowOnAndSoItDoesRestored) {
+  Character<float> c = add(false);
   EXPECT_EQ(contacts(), 0);
   ASSERT_TRUE(c.set_self_collision(SelfCollision::kOn));
   EXPECT_GT(contacts(), 0);
   std::vector<std::byte> saved(std::size_t(1) << 16);
-  const std::size_t bytes = scene.world.save(saved);
+  const std::size_t bytes = world->save(saved);
   ASSERT_TRUE(c.set_self_collision(SelfCollision::kOff));
   EXPECT_EQ(contacts(), 0);
-  ASSERT_TRUE(scene.world.restore(std::span(saved).first(bytes)));
+  ASSERT_TRUE(world->restore(std::span(saved).first(bytes)));
   EXPECT_GT(contacts(), 0);
+  ASSERT_TRUE(c.set_self_collision(SelfCollision::kAsCreated));
+  EXPECT_EQ(contacts(), 0);
+}
+
+TEST_F(Crossed, PassesThroughItselfThoughItWasCreatedNotTo) {
+  Character<float> c = add(true);
+  EXPECT_GT(contacts(), 0);
+  ASSERT_TRUE(c.set_self_collision(SelfCollision::kOff));
+  EXPECT_EQ(contacts(), 0);
+  ASSERT_TRUE(c.set_self_collision(SelfCollision::kAsCreated));
+  EXPECT_GT(contacts(), 0);
+  EXPECT_EQ(c.set_self_collision(SelfCollision(7)).code, Code::kInvalidArgument);
 }
 
 TEST(World, RefusesStepsThatCannotBeTakenAndMovesNothing) {

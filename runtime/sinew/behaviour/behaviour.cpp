@@ -334,7 +334,8 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   if ((high < (landing_ == Landing::kLands ? kSquats : kFallen) * body_.height && !flies()) ||
       (tilt * Vec3<double>::UnitZ()).z() < kUpright)
     return fall(character, BehaviourReason::kTilted, high);
-  if (report_.state == BehaviourState::kPassive) {
+  const bool reacts = report_.state == BehaviourState::kPassive;
+  if (reacts) {
     if (!last_step_.root_unknown) return give_up(character);
     if (report_.time < settings_.reaction) return;
     if (report_.time - h < settings_.reaction)  // the first time
@@ -358,7 +359,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   const Vec2 ahead =
       from_above(is.mass.place + is.mass.velocity / frequency_) - plan_.capture_point(frequency_);
   ahead_ -= portable::expm1(-h / (kSeen * std::sqrt(unit_))) * (ahead - ahead_);
-  if (report_.state == BehaviourState::kBalance) keep_balance(character, is);
+  if (report_.state == BehaviourState::kBalance) keep_balance(character, is, reacts);
   if (report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep) move_plan(h);
 }
 
@@ -368,17 +369,17 @@ void Behaviour<T>::help_trunk(Character<T>& character) const {
   (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
 }
 
-/// While both feet stand: a step if pressing does not reach, and else back to the animation.
+/// While both feet stand: a step if pressing does not reach, or would reach far as it `reacts` to a push, and
+/// else back to the animation.
 template <class T>
-void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is) {
+void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is, bool reacts) {
   const Vec2 capture = this->capture();
   const double speed = plan_.velocity.norm() / std::sqrt(unit_);
   report_.capture_depth = support_.depth(capture);
   if (landing_ == Landing::kLands && height_.rate < -kStill * std::sqrt(unit_))
     return;  // both legs are needed
   const Vec2 rest = goal();
-  const bool leans = report_.steps == 0 && landing_ == Landing::kNone &&
-                     support_.depth(rest + (capture - rest) / law_.functional) < 0;
+  const bool leans = reacts && support_.depth(rest + (capture - rest) / law_.functional) < 0;
   if (report_.capture_depth < 0 || leans) {
     home_ = -1;
     const int left = settings_.most_steps - report_.steps;

@@ -203,7 +203,7 @@ class Behaviour {
   void ride(Character<T>& character, JointJet<T>& root, double h) const;
   bool clip_walks() const;
   bool is_pushed(const MeasuredBody& is, double h);
-  void keep_balance(Character<T>& character, const MeasuredBody& is);
+  void keep_balance(Character<T>& character, const MeasuredBody& is, bool reacts);
   void give_up(Character<T>& character);
   void begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets);
   void choose_support(const MeasuredBody& is);

@@ -9,10 +9,10 @@ const char* behaviour_known_to_fail(const std::string& scene) {
     const char *name, *why;
   };
   static constexpr const char* kStand =
-      "until it reacts it is as stiff as a statue, whose soles press at once, so it steps later than people; "
-      "sideways it falls from less; while one foot stands it slides; help keeps the trunk up, of who does "
-      "not "
-      "step too; some are not back 5 s later";
+      "forward it falls from less than people, at 30 Hz to all sides, as a body that leans is not where its "
+      "plan is and hips give all that they can; pushed at the pelvis it steps later; while one foot stands "
+      "it "
+      "slides; help keeps the trunk up, of who does not step too; some are not back 5 s later";
   static constexpr const char* kHelped =
       "hands and feet stand a little elsewhere than the clip's, and nothing moves the body over them before "
       "it "
@@ -34,7 +34,8 @@ const char* behaviour_known_to_fail(const std::string& scene) {
       {"falls_30_Hz", kFalls},
       {"falls_120_Hz", kFalls},
       {"rates",
-       "what a step catches depends on the rate: where it falls differs by a fifth, backward by half"},
+       "what a step catches depends on the rate: it falls from up to a fifth less at 30 Hz, and steps later "
+       "backward there"},
   };
   // In lines of their own: hits on muscles with a tone.
   static constexpr Known kHits[] = {
