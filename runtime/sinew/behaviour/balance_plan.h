@@ -15,9 +15,11 @@ namespace sinew {
 struct BalanceLaw {
   double gain = 2;       ///< 1/s, with which ξ is brought back
   double margin = 0.01;  ///< m, that pressing stays inside the soles
-  /// Of the way from where ξ is at rest to the edge of the soles: people step when it is further out, though
-  /// they could press it back. That much of their feet they lean over (King, Judge and Wolfson, 1994).
-  double functional = 0.45;
+  /// Of the way from where ξ rests to the edge of the soles: who reacts to a push while it is further out
+  /// steps, though he could press it back. People lean over 0.6 of their feet (King, Judge and Wolfson,
+  /// "Functional base of support decreases with age", 1994); what soles press back before a body reacts is
+  /// the rest.
+  double functional = 0.35;
   double step_time = 0.30;     ///< s from lifting a foot to putting it down
   double join_time = 0.20;     ///< s, likewise of one that comes beside the other
   double longest_step = 1.05;  ///< m, between the ankles
