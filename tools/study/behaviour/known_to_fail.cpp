@@ -10,9 +10,9 @@ const char* behaviour_known_to_fail(const std::string& scene) {
   };
   static constexpr const char* kStand =
       "forward it falls from less than people, at 30 Hz to all sides, as a body that leans is not where its "
-      "plan is and hips give all that they can; pushed at the pelvis it steps later; while one foot stands "
-      "it "
-      "slides; help keeps the trunk up, of who does not step too; some are not back 5 s later";
+      "plan is and hips give all that they can; pushed back at the pelvis it steps later; while one foot "
+      "stands "
+      "it slides; help keeps the trunk up, of who does not step too; some are not back 5 s later";
   static constexpr const char* kHelped =
       "hands and feet stand a little elsewhere than the clip's, and nothing moves the body over them before "
       "it "
@@ -34,8 +34,8 @@ const char* behaviour_known_to_fail(const std::string& scene) {
       {"falls_30_Hz", kFalls},
       {"falls_120_Hz", kFalls},
       {"rates",
-       "what a step catches depends on the rate: it falls from up to a fifth less at 30 Hz, and steps later "
-       "backward there"},
+       "what a step catches depends on the rate: it falls from up to a fifth less at 30 Hz, and steps to the "
+       "side later there"},
   };
   // In lines of their own: hits on muscles with a tone.
   static constexpr Known kHits[] = {
