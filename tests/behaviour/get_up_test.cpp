@@ -225,7 +225,6 @@ TEST(GetUp, WhoFellInAWalkWalksOn) {
   }
 }
 
-/// Without a clip that rises from the back: a body that lies there turns over with the help of who rises.
 /// Limbs that cross on the way do not catch each other: it rises as who never meets itself does.
 TEST(GetUp, PassesThroughItselfWhateverItsHostAsksFor) {
   Fallen asked({}, 0, "stand", true), never;
@@ -240,6 +239,7 @@ TEST(GetUp, PassesThroughItselfWhateverItsHostAsksFor) {
     EXPECT_EQ(asked.character().model()[joint].translation, never.character().model()[joint].translation);
 }
 
+/// Without a clip that rises from the back: a body that lies there turns over with the help of who rises.
 TEST(GetUp, WhoLiesOnHisBackRollsOverAndRisesFromHisHands) {
   for (const double hz : {30.0, 60.0, 120.0})
     for (const double direction : {0.9 * kPi, kPi, 1.1 * kPi}) {

@@ -373,14 +373,16 @@ void Behaviour<T>::help_trunk(Character<T>& character) const {
 /// else back to the animation.
 template <class T>
 void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is, bool reacts) {
-  const Vec2 capture = this->capture();
+  const Vec2 capture = capture_point();
   const double speed = plan_.velocity.norm() / std::sqrt(unit_);
   report_.capture_depth = support_.depth(capture);
   if (landing_ == Landing::kLands && height_.rate < -kStill * std::sqrt(unit_))
     return;  // both legs are needed
-  const Vec2 rest = goal();
-  const bool leans = reacts && support_.depth(rest + (capture - rest) / law_.functional) < 0;
-  if (report_.capture_depth < 0 || leans) {
+  const auto leans = [&] {
+    const Vec2 rest = goal();
+    return support_.depth(rest + (capture - rest) / law_.functional) < 0;
+  };
+  if (report_.capture_depth < 0 || (reacts && leans())) {
     home_ = -1;
     const int left = settings_.most_steps - report_.steps;
     if (out_of_reach(-report_.capture_depth, frequency_, left, law_))
@@ -399,7 +401,7 @@ void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is,
 
 /// The plan's, as far as the body is where its plan is.
 template <class T>
-Vec2 Behaviour<T>::capture() const {
+Vec2 Behaviour<T>::capture_point() const {
   return plan_.capture_point(frequency_) + kTrusted * ahead_;
 }
 
@@ -501,7 +503,7 @@ bool Behaviour<T>::can_join(int foot, const MeasuredBody& is) const {
 /// as people's do.
 template <class T>
 void Behaviour<T>::begin_step(const MeasuredBody& is) {
-  int foot = stepping_foot(feet_now(is.root), capture(), support_.middle(), law_);
+  int foot = stepping_foot(feet_now(is.root), capture_point(), support_.middle(), law_);
   const bool joins = can_join(1 - foot, is);
   if (joins) foot = 1 - foot;
   ++report_.steps;
@@ -583,9 +585,9 @@ template <class T>
 void Behaviour<T>::move_swing(double h) {
   swing_time_ += h;
   const auto side = static_cast<std::size_t>(swing_);
-  if (home_ >= 0 && support_.depth(capture()) < 0) home_ = -1;  // it has to catch the body
-  if (home_ >= 0 || swing_time_ > 0.8 * swing_lasts_) return;   // it keeps its landing place
-  const Vec2 capture = this->capture();
+  if (home_ >= 0 && support_.depth(capture_point()) < 0) home_ = -1;  // it has to catch the body
+  if (home_ >= 0 || swing_time_ > 0.8 * swing_lasts_) return;         // it keeps its landing place
+  const Vec2 capture = capture_point();
   const Vec2 lands = capture_point_after(capture, frequency_, swing_lasts_ - swing_time_, support_);
   const Vec2 to = within_reach(feet_now({root_before_, {}}), swing_, lands + clip_foot_[side], law_);
   foot_[side].translation.z() += rises_along(to - from_above(foot_[side].translation));

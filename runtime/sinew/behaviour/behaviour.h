@@ -264,7 +264,7 @@ class Behaviour {
   void take_over(Character<T>& character, std::span<JointJet<T>> jets, double h);
   void tell(BehaviourEventKind kind, BehaviourReason reason, double number = 0);
   bool may_finish(const MeasuredBody& is) const;
-  Vec2 capture() const;
+  Vec2 capture_point() const;
   Vec2 goal() const;
   Feet feet_now(const Transform<double>& root) const;
 

@@ -242,15 +242,17 @@ void visit_tone(CharacterState<T>& s, ByteStream& stream) {
 
 template <class T>
 void visit_state(CharacterState<T>& s, ByteStream& stream) {
-  constexpr std::uint8_t kDisplaced = 0x80, kSelfCollision = 0x20, kDrive = 0x1f;
+  constexpr std::uint8_t kDisplaced = 0x80, kMeetsItself = 0x40, kPassesItself = 0x20, kDrive = 0x1f;
   std::uint8_t root = static_cast<std::uint8_t>(s.settings.root) |
                       (s.grounding.by.any() ? kDisplaced : std::uint8_t{0}) |
-                      static_cast<std::uint8_t>(static_cast<int>(s.self_collision) * kSelfCollision);
+                      (s.self_collision == SelfCollision::kOn ? kMeetsItself : std::uint8_t{0}) |
+                      (s.self_collision == SelfCollision::kOff ? kPassesItself : std::uint8_t{0});
   stream.value("root drive", root);
   const bool displaced = (root & kDisplaced) != 0;
-  const int self_collision = (root & ~kDisplaced) / kSelfCollision;
-  if (stream.reading() && self_collision <= static_cast<int>(SelfCollision::kOff))
-    s.self_collision = static_cast<SelfCollision>(self_collision);
+  if (stream.reading())
+    s.self_collision = (root & kMeetsItself) != 0    ? SelfCollision::kOn
+                       : (root & kPassesItself) != 0 ? SelfCollision::kOff
+                                                     : SelfCollision::kAsCreated;
   root &= kDrive;
   stream.flag("out of the world", s.parked);
   if (stream.reading() && root <= static_cast<std::uint8_t>(RootDrive::kGrounded))
