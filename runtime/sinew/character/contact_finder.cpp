@@ -319,10 +319,19 @@ void ContactFinder<T>::meet(int n, int collider, Met met, T reach) {
 template <class T>
 void ContactFinder<T>::meet_points(int n, int collider, const Met& met, int face, T reach) {
   const CharacterState<T>& s = *states_[n];
+  const bool along = lie_along(n, collider, met);
+  const Transform<T> pose = along ? pose_of(met) : Transform<T>();
+  const Kinematics<T>& k_own = s.problem.kinematics;
+  // Of an end, whether it is beside what it lies along.
+  const auto beside = [&](const ContactPoint<T>& p) {
+    const Vec3<T> at = k_own.origin[p.body] + k_own.rotation[p.body] * p.local;
+    return p.kind == PointKind::kTip && std::abs((pose.inverse() * at).z()) <= met.size.z();
+  };
   for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
     const ContactPoint<T>& point = s.points[k];
     // Two axes need to meet once only.
-    if (!point.meets(met.shape) || (met.second && point.kind == PointKind::kAxis)) continue;
+    if (along ? !beside(point) : !point.meets(met.shape) || (met.second && point.kind == PointKind::kAxis))
+      continue;
     Contact<T> c = contact_with(met, contact_of(n, point), point.friction);
     c.shape = met.shape;
     c.size = met.size;

@@ -166,6 +166,7 @@ class ContactFinder final : public ContactSearch<T> {
   Transform<T> pose_of(const Met& met) const;
   void meet(int n, int collider, Met met, T reach);
   void meet_points(int n, int collider, const Met& met, int face, T reach);
+  bool lie_along(int n, int collider, const Met& met) const;
   PlacedShape<T> placed(int n, int collider) const;
   PlacedShape<T> placed(const Met& met, T unit) const;
   void meet_edges(int n, int collider, const Met& met, T reach);

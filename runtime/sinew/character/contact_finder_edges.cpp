@@ -47,6 +47,37 @@ PlacedShape<T> ContactFinder<T>::placed(const Met& met, T unit) const {
           met.hull};
 }
 
+namespace {
+
+/// rad between the axes of capsules that lie along each other: ends of limbs then end a millimetre beside
+/// where they would cross.
+constexpr double kAlong = 0.07;
+
+/// m that the ends of b are beside a, along a's axis; 0 unless they lie along each other.
+template <class T>
+T overlap_along(const PlacedShape<T>& a, const PlacedShape<T>& b) {
+  const Vec3<T> axis = a.rotation.col(2), other = b.rotation.col(2);
+  if (axis.cross(other).squaredNorm() > T(kAlong * kAlong)) return T(0);
+  const T middle = axis.dot(b.center - a.center);
+  return std::min(a.size.z(), middle + b.size.z()) - std::max(-a.size.z(), middle - b.size.z());
+}
+
+}  // namespace
+
+/// Whether a collider and what it meets are capsules that lie along each other: the nearest points of their
+/// axes leap from one end to the other as they rock, and no solve finds where they come to rest. Their ends
+/// meet then, each what is beside it. Of what is static both ends have to be, since it has no points.
+template <class T>
+bool ContactFinder<T>::lie_along(int n, int collider, const Met& met) const {
+  const CharacterState<T>& s = *states_[n];
+  if (met.shape != Shape::kCapsule || s.colliders[collider].shape != Shape::kCapsule) return false;
+  const PlacedShape<T> own = placed(n, collider), other = placed(met, s.tree.scale.length);
+  // The same of both, to the last digit, whoever asks.
+  const T beside = met.second ? overlap_along(other, own) : overlap_along(own, other);
+  if (met.tree < 0) return beside > T(1.99) * own.size.z() && beside > T(0);
+  return beside > std::min(own.size.x(), other.size.x());
+}
+
 /// The edges of a polyhedron across those of another or the axis of a capsule that cross now; of others that
 /// come to cross within the step, meet_solids() knows.
 template <class T>
@@ -189,6 +220,7 @@ void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach
 #define SINEW_EDGE_INSTANCES(T)                                          \
   template PlacedShape<T> ContactFinder<T>::placed(int, int) const;      \
   template PlacedShape<T> ContactFinder<T>::placed(const Met&, T) const; \
+  template bool ContactFinder<T>::lie_along(int, int, const Met&) const; \
   template void ContactFinder<T>::meet_edges(int, int, const Met&, T);   \
   template bool ContactFinder<T>::crushes(int, int) const;               \
   template void ContactFinder<T>::leave_to_others(Contact<T>&) const;    \

@@ -106,20 +106,22 @@ Vec3<T> at(const Kinematics<T>* k, int body, const Vec3<T>& local) {
 
 namespace {
 
+constexpr double kParallel = 0.05;  ///< rad; lines at less than that slide as if they were
+
 /// Distance between the axis of a (half length `a`, about `from`) and that of a sphere or capsule in its own
 /// axes, and how far along the first the nearest point lies, in [−1, 1]. The distance of two skew axes does
-/// not bend along either.
+/// not bend along either. `across`: see Sliding; zero where the nearest point is an end of a's.
 template <class T>
-SignedDistance<T> axis_distance(const Vec3<T>& size, T half, const Vec3<T>& from, const Vec3<T>& a,
-                                T& along) {
+SignedDistance<T> axis_distance(const Vec3<T>& size, T half, const Vec3<T>& from, const Vec3<T>& a, T& along,
+                                Vec3<T>& across) {
   // Nearest points of from + s·a and (0, 0, t): alternating clamps on the exact minimiser.
   const T aa = a.squaredNorm(), az = a.z();
-  const T across = aa - az * az;  // squared sine, times aa
+  const T sine = aa - az * az;  // squared, times aa
   const Vec3<T>& r = from;
   T s = T(0);
   bool inner = false;
-  if (across > T(1e-6) * aa) {
-    const T free = (az * r.z() - a.dot(r)) / across;
+  if (sine > T(1e-6) * aa) {
+    const T free = (az * r.z() - a.dot(r)) / sine;
     s = std::clamp(free, T(-1), T(1));
     inner = free == s;
   }
@@ -130,16 +132,20 @@ SignedDistance<T> axis_distance(const Vec3<T>& size, T half, const Vec3<T>& from
     inner = false;
   }
   along = s;
+  across.setZero();
   const Vec3<T> p = r + s * a;
   if (!inner || half <= T(0)) {
     auto d =
         signed_distance<T>(half > T(0) ? Shape::kCapsule : Shape::kSphere, {size.x(), size.y(), half}, p);
-    if (std::abs(s) < T(1)) d.straight = a / std::sqrt(aa);
+    if (std::abs(s) < T(1)) across = d.straight = a / std::sqrt(aa);
     return d;
   }
   const Vec3<T> offset(p.x(), p.y(), T(0));
   const T length = offset.norm();
-  if (length > T(1e-6)) return {length - size.x(), offset / length, T(0), Vec3<T>::Zero()};
+  if (length > T(1e-6)) {
+    across = Vec3<T>(offset.y(), -offset.x(), T(0)) / length;
+    return {length - size.x(), offset / length, T(0), Vec3<T>::Zero()};
+  }
   return {-size.x(), Vec3<T>(-a.y(), a.x(), T(0)).normalized(), T(0), Vec3<T>::Zero()};
 }
 
@@ -190,12 +196,21 @@ void bend(const Mat3<T>& rotation, const SignedDistance<T>& d, Contact<T>& c) {
       d.curvature * (Mat3<T>::Identity() - c.normal * c.normal.transpose() - straight * straight.transpose());
 }
 
+/// `axis`: unit, of a's line.
+template <class T>
+Sliding<T> sliding_along(const Vec3<T>& axis, const Vec3<T>& across, const Vec3<T>& normal, T lever) {
+  const T sine = across.dot(axis);
+  return {true, across, normal.cross(axis) * (sine / (sine * sine + T(kParallel * kParallel))), lever};
+}
+
 /// A point of a against a shape of b.
 template <class T>
 void measure_point(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   const Mat3<T> rotation = rotation_of(b, c.body_b) * c.shape_pose.rotation.toRotationMatrix();
   const Vec3<T> origin = at(b, c.body_b, c.shape_pose.translation);
   SignedDistance<T> d;
+  Vec3<T> across = Vec3<T>::Zero();
+  c.sliding.slides = false;
   if (c.half_axis_a.isZero(T(0)) || is_polyhedron(c.shape)) {
     const Vec3<T> at = rotation.transpose() * (c.point - origin);
     d = signed_distance<T>(c.shape, c.size, at, c.hull);
@@ -204,8 +219,12 @@ void measure_point(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c
     const Vec3<T> axis = a.rotation[c.body_a] * c.half_axis_a;
     T along = T(0);
     d = axis_distance<T>(c.size, c.shape == Shape::kCapsule ? c.size.z() : T(0),
-                         rotation.transpose() * (c.point - origin), rotation.transpose() * axis, along);
+                         rotation.transpose() * (c.point - origin), rotation.transpose() * axis, along,
+                         across);
     c.point += along * axis;
+    if (!across.isZero(T(0)))
+      c.sliding = sliding_along<T>(axis.normalized(), rotation * across, rotation * d.normal,
+                                   d.distance + c.size.x());
   }
   c.normal = rotation * d.normal;
   c.gap = d.distance - c.radius + c.slack + c.offset;
@@ -233,7 +252,12 @@ void measure_edges(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c
                 apart = at(b, c.body_b, c.local_b) - c.point;
   const Vec3<T> across = c.side * axis_a.cross(axis_b);
   const T size = across.norm();
-  if (size > std::numeric_limits<T>::epsilon() * axis_a.norm() * axis_b.norm()) c.normal = across / size;
+  c.sliding.slides = false;
+  if (size > std::numeric_limits<T>::epsilon() * axis_a.norm() * axis_b.norm()) {
+    c.normal = across / size;
+    c.sliding = sliding_along<T>(axis_a.normalized(), c.normal.cross(axis_b).normalized(), c.normal,
+                                 -c.normal.dot(apart));
+  }
   // Where a solve turns them parallel the nearest point goes to infinity.
   c.point += std::clamp(nearest_along(axis_a, axis_b, apart)[0], T(-2), T(2)) * axis_a;
   c.gap = -c.normal.dot(apart) - c.radius + c.slack + c.offset;

@@ -112,6 +112,18 @@ struct Bounce {
   T from = T(0);   ///< m/s; what closes more slowly does not part
 };
 
+/// Of the nearest points of two lines (or of a line and a point), which slide along them as these turn: the
+/// normal tips with them, and the gap closes faster than it does at either end, the more so the nearer the
+/// lines are to parallel. As a moves against b by v (of the contact point) and ω, the second derivative of
+/// the gap is 2μw − lever·μ², with μ = ω·tipping and w = v·across.
+template <class T>
+struct Sliding {
+  bool slides = false;
+  Vec3<T> across = Vec3<T>::Zero();   ///< unit, world: what the normal tips along
+  Vec3<T> tipping = Vec3<T>::Zero();  ///< world: by how much, per rad
+  T lever = T(0);                     ///< m, from the line of b to that of a
+};
+
 /// One candidate contact. `tree_a` and `tree_b` index the trees of the solve; tree_b < 0 is the static world.
 template <class T>
 struct Contact {
@@ -190,6 +202,7 @@ struct Contact {
 
   bool bends = false;                 ///< the surface is curved at the contact
   Mat3<T> bending = Mat3<T>::Zero();  ///< ∇²distance, 1/m
+  Sliding<T> sliding;
 };
 
 /// Normal energy of a gap (m) and its derivatives; `width` (m) is that of the cubic start: 0.5 mm of a

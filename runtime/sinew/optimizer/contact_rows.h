@@ -69,6 +69,11 @@ class ContactModel {
   /// couples two sides.
   virtual void add_bending(TreeMatrix<T>& /*matrix*/) const {}
   virtual void multiply_bending(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
+  /// Geometric term of lines that slide along each other, force·(lever·μ² − 2μw), as far as it stiffens (see
+  /// Sliding): a model without it takes figures that lie across each other to where their limbs are pressed
+  /// many times as hard. Per side, and what couples two sides.
+  virtual void add_sliding(TreeMatrix<T>& /*matrix*/) const {}
+  virtual void multiply_sliding(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
 };
 
 /// With contacts.

@@ -142,6 +142,7 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts,
                          [&](int k, int l, T value) { smooth_.row(k)[unknowns_.pattern.depth[l]] += value; });
   }
   if (geometry_ == Geometry::kAll) contact_rows_->add_bending(smooth_);
+  contact_rows_->add_sliding(smooth_);
   if (!tied()) return;
   local_.values() = smooth_.values();
   couplings_->add_curvature(local_);
@@ -229,6 +230,7 @@ void InnerProblem<T>::multiply_smooth(std::span<const T> x, std::span<T> y) {
   if (articulated_) return joints_.multiply(x, y);
   smooth_.multiply(x, y);
   if (geometry_ == Geometry::kAll && contact_rows_->coupled()) contact_rows_->multiply_bending(x, y);
+  if (contact_rows_->coupled()) contact_rows_->multiply_sliding(x, y);
   if (tied()) couplings_->multiply(x, y);
 }
 
@@ -333,6 +335,7 @@ bool InnerProblem<T>::conjugate_gradients() {
       product_ = factored_;
       contact_rows_->multiply_coupling(direction_, product_);
       if (geometry_ == Geometry::kAll) contact_rows_->multiply_bending(direction_, product_);
+      contact_rows_->multiply_sliding(direction_, product_);
     }
     ++products;
     const T curvature = dot<T>(direction_, product_);
