@@ -136,15 +136,23 @@ long() {  # long NAME: a hard-cases test at the length that the environment asks
   }
 }
 
-at_length() {
-  SINEW_RANDOM_TREES=2000 long random_trees
-  SINEW_SOAK_SECONDS=120 long soak
+study_accuracy() {
   echo "accuracy study …" >&2
   build/sinew study accuracy --quick -o build/study >build/accuracy.log || [ $? = 3 ] || {  # 3: busy, no presets
     tail -n 30 build/accuracy.log >&2
     echo "tests: the accuracy study failed (whole log: build/accuracy.log)" >&2
     exit 1
   }
+}
+
+# All at once: each mostly runs on one processor.
+at_length() {
+  local pids=() pid failed=0
+  (SINEW_RANDOM_TREES=2000 long random_trees) & pids+=($!)
+  (SINEW_SOAK_SECONDS=120 long soak) & pids+=($!)
+  (study_accuracy) & pids+=($!)
+  for pid in "${pids[@]}"; do wait "$pid" || failed=1; done
+  return $failed
 }
 
 sanitize_studies() {

@@ -218,6 +218,42 @@ TEST(Contact, GapAndSlipChangeAsTheirGradientsSay) {
   expect_gradients(floor);
 }
 
+// By central differences of the gap, as body a turns and moves as a whole; seeds let the nearest points lie
+// inside both axes, at an end of one, or at ends of both.
+TEST(Contact, GapBendsAsItsSurfaceAndItsSlidingSay) {
+  int sliding = 0;
+  for (unsigned seed = 1; seed <= 400; ++seed)
+    for (const Shape shape : {Shape::kSphere, Shape::kCapsule}) {
+      SCOPED_TRACE(testing::Message() << "shape " << int(shape) << " seed " << seed);
+      Pair p(shape, true, false, true, seed);
+      const Contact<double> c = p.contact;
+      const V axis = (p.a.rotation[c.body_a] * c.half_axis_a).normalized();
+      if (c.sliding.slides && std::abs(c.sliding.across.dot(axis)) < 0.5) continue;  // see kParallel
+      sliding += c.sliding.slides;
+      const V spin = p.random.vector(1), speed = p.random.vector(1);
+      const Transform<double> root = p.pose_a[0];
+      const auto gap = [&](double t) {
+        const Quat<double> turn(Eigen::AngleAxisd(t * spin.norm(), spin.normalized()));
+        p.pose_a[0] = Transform<double>{turn, t * speed} * root;
+        p.refresh();
+        Contact<double> moved = c;
+        measure<double>(p.a, p.other(), moved);
+        return moved.gap;
+      };
+      constexpr double step = 1e-4;
+      const double second = (gap(step) - 2 * gap(0) + gap(-step)) / (step * step);
+      const V moves = speed + spin.cross(c.point);
+      double expected = c.normal.dot(spin.cross(spin.cross(c.point)));
+      if (c.bends) expected += moves.dot(c.bending * moves);
+      if (c.sliding.slides) {
+        const double tips = spin.dot(c.sliding.tipping);
+        expected += 2 * tips * moves.dot(c.sliding.across) - c.sliding.lever * tips * tips;
+      }
+      EXPECT_NEAR(second, expected, 1e-4 + 0.02 * std::abs(expected) + 0.02 * spin.squaredNorm());
+    }
+  EXPECT_GT(sliding, 20);
+}
+
 TEST(Contact, SlipIsZeroWhenTheStepBegins) {
   Pair pair(Shape::kBox, true, false);
   begin_step<double>(pair.a, pair.other(), pair.contact);

@@ -31,6 +31,7 @@ constexpr int kEasyPasses = 8;  ///< a solve that took more may have gone astray
 constexpr int kTightenRounds = 6;
 constexpr double kSlides = 0.99;  ///< of the square of a stick: what slides as far has left no elastic slip
 constexpr int kLeastPasses = 12;  ///< of a solve, where the step has none left: 8 leave 5 cm of error
+constexpr int kMostUnsolved = 3;  ///< as many halvings leave the least passes
 
 /// Whether no force from outside acts on it but gravity, contacts and couplings.
 template <class T>
@@ -633,6 +634,15 @@ void IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   for (Coupling<T>* c : couplings_) settings_.plan->couplings->close_slowly(h, *c);
 }
 
+/// Most of the trees' unsolved steps: each in a row halves what the next may take. What is jammed, or begins deep
+/// inside something, is not solved by more passes either.
+template <class T>
+int IslandStepper<T>::unsolved() const {
+  int most = 0;
+  for (const CharacterState<T>* s : states_) most = std::max(most, int(s->unsolved));
+  return most;
+}
+
 template <class T>
 int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
                            std::span<CharacterState<T>* const> states, std::span<const int> indices,
@@ -642,7 +652,7 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   const int parts = parts_of();
   const bool fine = may_divide();
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
-  passes_left_ = std::max(parts * world.accuracy.max_passes - spent, 0);
+  passes_left_ = std::max((parts * world.accuracy.max_passes >> unsolved()) - spent, 0);
   for (int n = 0; n < parts; ++n)
     advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), splits);
   for (CharacterState<T>* s : states_) {
@@ -653,6 +663,7 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
     r.corrections = total_.corrections;
     r.plain_passes = total_.plain_passes;
     r.converged = all_converged_;
+    s->unsolved = all_converged_ ? 0 : static_cast<std::uint8_t>(std::min(s->unsolved + 1, kMostUnsolved));
     r.substeps = parts_;
     r.splits = splits_;
     r.damped = damped_;

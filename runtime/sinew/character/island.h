@@ -54,6 +54,7 @@ class IslandStepper {
 
   std::span<const std::uint8_t> find_bearing(int tree);
   int parts_of() const;
+  int unsolved() const;
   bool may_divide() const;
   bool starts() const;
   void limit_guess(T h);

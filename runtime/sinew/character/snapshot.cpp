@@ -285,6 +285,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   stream.value("contacts that touched", s.contact_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
   stream.value("steps of suspended collision", s.collision_suspended);
+  stream.value("unsolved steps", s.unsolved);
   stream.value("energy ceiling", s.energy_ceiling);
   {
     ResidualCoder<double> coder("energy lent by surfaces, stored energy", stream, true);

@@ -408,6 +408,7 @@ void CharacterState<T>::forget_contacts() {
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
   collision_suspended = 0;
+  unsolved = 0;
   forget_energy();
 }
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "sinew/optimizer/newton_constants.h"
-#include "sinew/residual/tree_factor_pass.h"
 
 namespace sinew {
 namespace {
@@ -33,7 +32,7 @@ class ContactRows final : public ContactModel<T> {
 
   void reserve(int contacts, int entries) override;
   std::size_t bytes(const SolveCapacity& capacity) const override {
-    return capacity.contacts * sizeof(Row) + capacity.contact_entries * (7 * sizeof(T));
+    return capacity.contacts * sizeof(Row) + capacity.contact_entries * (sizeof(int) + 7 * sizeof(T));
   }
   void limit(int entries) override { most_entries_ = entries; }
   void evaluate(Trees trees, std::span<Contact<T>> contacts, T stick, double& energy) const override;
@@ -60,9 +59,9 @@ class ContactRows final : public ContactModel<T> {
 
  private:
   struct Side {
-    int begin = 0;  ///< of the entries of its whole path, root first
-    int leaf = -1;  ///< unknown that the path ends with; -1: it stands still
-    int depth = 0;  ///< position of the first that moves it
+    int first = 0;  ///< of its entries
+    int count = 0;
+    int depth = 0;  ///< position of the first entry on its unknown's path
   };
   /// Second derivative by (gap, slip 1, slip 2).
   struct Block {
@@ -88,7 +87,7 @@ class ContactRows final : public ContactModel<T> {
     Mat3<T> bending = Mat3<T>::Zero();  ///< −force·∇²distance, N/m, world axes
     T sliding = T(0);                   ///< N/m, see Slide
 
-    bool couples() const { return side[0].leaf >= 0 && side[1].leaf >= 0; }
+    bool couples() const { return side[0].count > 0 && side[1].count > 0; }
   };
   /// The stiffer direction of force·(lever·μ² − 2μw), turns taken as displacements at kArm.
   struct Slide {
@@ -107,27 +106,14 @@ class ContactRows final : public ContactModel<T> {
   Block block(const Row& row, T drag) const;
   Change along(const Side& side, std::span<const T> direction) const;
   void pull(const Side& side, const Block& block, const Change& change, std::span<T> y) const;
-  /// y += the side's rowsᵀ · (normal, one, two).
-  void pull(const Side& side, T normal, T one, T two, std::span<T> y) const;
-  /// does(first unknown, its entry, how many) for all runs that move a side.
-  template <class Does>
-  void for_entries(const Side& side, const Does& does) const {
-    for_runs(*pattern_, side.leaf, side.depth,
-             [&](int first, int position, int count) { does(first, side.begin + position, count); });
-  }
-  /// does(unknown, its place among them) for all unknowns that move a side.
-  template <class Does>
-  void for_unknowns(const Side& side, const Does& does) const {
-    for (int k = side.leaf; k >= 0 && pattern_->depth[k] >= side.depth; k = pattern_->parent[k])
-      does(k, pattern_->depth[k] - side.depth);
-  }
 
-  std::vector<Row> rows_;
-  const TreePattern* pattern_ = nullptr;
-  std::array<std::vector<T>*, 7> entries() {
+  /// All that has a value per entry.
+  std::array<std::vector<T>*, 7> arrays() {
     return {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2], &slide_};
   }
 
+  std::vector<Row> rows_;
+  std::vector<int> unknown_;  ///< [entry]
   std::vector<T> gap_, slip_[2],
       move_[3];           ///< [entry] change per unknown; move_: of the contact point, world
   std::vector<T> slide_;  ///< [entry] likewise, see Slide
@@ -171,7 +157,8 @@ void ContactRows<T>::add_forces(Trees trees, std::span<const Contact<T>> contact
 template <class T>
 void ContactRows<T>::reserve(int contacts, int entries) {
   rows_.reserve(contacts);
-  for (std::vector<T>* v : this->entries()) v->reserve(entries);
+  unknown_.reserve(entries);
+  for (std::vector<T>* v : arrays()) v->reserve(entries);
   most_entries_ = entries;
 }
 
@@ -182,14 +169,17 @@ typename ContactRows<T>::Side ContactRows<T>::add_side(const Contact<T>& c, int 
   Side side;
   if (leaf < 0 || leaf == above) return side;
   const int whole = pattern.depth[leaf] + 1;
-  const std::size_t begin = gap_.size(), size = begin + TreePattern::padded(whole);
+  const std::size_t begin = unknown_.size(), size = begin + TreePattern::padded(whole);
   if (size > static_cast<std::size_t>(most_entries_))
     return side;  // full: this side stands still in the inner problem
-  for (std::vector<T>* v : entries()) v->resize(size);
+  unknown_.resize(size);
+  for (std::vector<T>* v : arrays()) v->resize(size);
   // What moves both sides alike, up to `above`, is left out.
   side.depth = above < 0 ? 0 : pattern.depth[above] + 1;
-  side.begin = static_cast<int>(begin);
-  side.leaf = leaf;
+  side.first = static_cast<int>(begin) + side.depth;
+  side.count = whole - side.depth;
+  for (int k = leaf, e = static_cast<int>(begin) + whole - 1; e >= side.first; k = pattern.parent[k], --e)
+    unknown_[e] = k;
   // A unit force along each direction, and its moment about the common origin: n·(v + w × x) = n·v + (x ×
   // n)·w.
   const auto project = [&](const Vec3<T>& direction, const Vec3<T>& at, std::vector<T>& out) {
@@ -212,8 +202,8 @@ template <class T>
 void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, const Unknowns& unknowns,
                              const PathAxes<T>& axes, T near, T stick) {
   rows_.clear();
-  pattern_ = &unknowns.pattern;
-  for (std::vector<T>* v : entries()) v->clear();
+  unknown_.clear();
+  for (std::vector<T>* v : arrays()) v->clear();
   coupled_ = false;
   for (std::size_t n = 0; n < contacts.size(); ++n) {
     const Contact<T>& c = contacts[n];
@@ -238,7 +228,7 @@ void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, 
     row.side[0] = add_side(c, leaf_a, c.material_point, T(1), shared, unknowns.pattern, axes);
     if (c.tree_b >= 0)
       row.side[1] = add_side(c, leaf_b, c.material_point_b, T(-1), shared, unknowns.pattern, axes);
-    if (row.side[0].leaf < 0 && row.side[1].leaf < 0) continue;
+    if (row.side[0].count + row.side[1].count == 0) continue;
     row.bends = c.expected_force > T(0) && c.bends;
     if (row.bends) row.bending = -c.expected_force * c.bending;
     if (slides(c)) row.sliding = Slide(c).stiffness;
@@ -250,14 +240,12 @@ void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, 
 template <class T>
 typename ContactRows<T>::Change ContactRows<T>::along(const Side& side, std::span<const T> direction) const {
   Change change;
-  for_entries(side, [&](int first, int e, int count) {
-    for (int i = 0; i < count; ++i) {
-      const T d = direction[first + i];
-      change.gap += gap_[e + i] * d;
-      change.slip[0] += slip_[0][e + i] * d;
-      change.slip[1] += slip_[1][e + i] * d;
-    }
-  });
+  for (int e = side.first; e < side.first + side.count; ++e) {
+    const T d = direction[unknown_[e]];
+    change.gap += gap_[e] * d;
+    change.slip[0] += slip_[0][e] * d;
+    change.slip[1] += slip_[1][e] * d;
+  }
   return change;
 }
 
@@ -267,16 +255,8 @@ void ContactRows<T>::pull(const Side& side, const Block& b, const Change& change
   const T normal = b.normal * change.gap;
   const T one = b.slip11 * change.slip[0] + b.slip12 * change.slip[1];
   const T two = b.slip12 * change.slip[0] + b.slip22 * change.slip[1];
-  pull(side, normal, one, two, y);
-}
-
-template <class T>
-void ContactRows<T>::pull(const Side& side, T normal, T one, T two, std::span<T> y) const {
-  for_entries(side, [&](int first, int e, int count) {
-    T* __restrict out = y.data() + first;
-    const T *gap = &gap_[e], *slip0 = &slip_[0][e], *slip1 = &slip_[1][e];
-    for (int i = 0; i < count; ++i) out[i] += normal * gap[i] + one * slip0[i] + two * slip1[i];
-  });
+  for (int e = side.first; e < side.first + side.count; ++e)
+    y[unknown_[e]] += normal * gap_[e] + one * slip_[0][e] + two * slip_[1][e];
 }
 
 template <class T>
@@ -360,7 +340,9 @@ void ContactRows<T>::add_gradient(std::span<T> gradient) const {
     } else if (pressure <= T(0)) {
       continue;
     }
-    for (const Side& side : row.side) pull(side, -pressure, drag[0], drag[1], gradient);
+    for (const Side& side : row.side)
+      for (int e = side.first; e < side.first + side.count; ++e)
+        gradient[unknown_[e]] += drag[0] * slip_[0][e] + drag[1] * slip_[1][e] - pressure * gap_[e];
   }
 }
 
@@ -387,14 +369,15 @@ void ContactRows<T>::add_curvature(TreeMatrix<T>& matrix, T drag) {
     const Block b = row.curvature = block(row, drag);
     if (b.zero()) continue;
     for (const Side& side : row.side) {
-      const int from = side.begin + side.depth;
-      const T *gap = gap_.data() + from, *first = slip_[0].data() + from, *second = slip_[1].data() + from;
-      for_unknowns(side, [&](int k, int i) {
+      const T *gap = gap_.data() + side.first, *first = slip_[0].data() + side.first,
+              *second = slip_[1].data() + side.first;
+      for (int i = 0; i < side.count; ++i) {
         const T normal = b.normal * gap[i];
         const T one = b.slip11 * first[i] + b.slip12 * second[i];
         const T two = b.slip12 * first[i] + b.slip22 * second[i];
-        add_combination(matrix.row(k) + side.depth, normal, gap, one, first, two, second, i);
-      });
+        add_combination(matrix.row(unknown_[side.first + i]) + side.depth, normal, gap, one, first, two,
+                        second, i);
+      }
     }
   }
 }
@@ -423,34 +406,28 @@ template <class T>
 void ContactRows<T>::add_bending(TreeMatrix<T>& matrix) const {
   for (const Row& row : rows_) {
     if (!row.bends) continue;
-    for (const Side& side : row.side) {
-      const int from = side.begin + side.depth;
-      for_unknowns(side, [&](int k, int i) {
-        const int e = from + i;
+    for (const Side& side : row.side)
+      for (int i = 0; i < side.count; ++i) {
+        const int e = side.first + i;
         const Vec3<T> f = row.bending * Vec3<T>(move_[0][e], move_[1][e], move_[2][e]);
-        add_combination(matrix.row(k) + side.depth, f.x(), &move_[0][from], f.y(), &move_[1][from], f.z(),
-                        &move_[2][from], i);
-      });
-    }
+        add_combination(matrix.row(unknown_[e]) + side.depth, f.x(), &move_[0][side.first], f.y(),
+                        &move_[1][side.first], f.z(), &move_[2][side.first], i);
+      }
   }
 }
 
 template <class T>
 void ContactRows<T>::multiply_bending(std::span<const T> x, std::span<T> y) const {
   for (const Row& row : rows_) {
-    if (!row.bends || !row.couples()) continue;
+    if (!row.bends || row.side[0].count == 0 || row.side[1].count == 0) continue;
     Vec3<T> moved[2] = {Vec3<T>::Zero(), Vec3<T>::Zero()};
     for (const int n : {0, 1})
-      for_entries(row.side[n], [&](int first, int e, int count) {
-        for (int i = 0; i < count; ++i)
-          moved[n] += x[first + i] * Vec3<T>(move_[0][e + i], move_[1][e + i], move_[2][e + i]);
-      });
+      for (int e = row.side[n].first; e < row.side[n].first + row.side[n].count; ++e)
+        moved[n] += x[unknown_[e]] * Vec3<T>(move_[0][e], move_[1][e], move_[2][e]);
     for (const int n : {0, 1}) {
       const Vec3<T> f = row.bending * moved[1 - n];
-      for_entries(row.side[n], [&](int first, int e, int count) {
-        for (int i = 0; i < count; ++i)
-          y[first + i] += f.x() * move_[0][e + i] + f.y() * move_[1][e + i] + f.z() * move_[2][e + i];
-      });
+      for (int e = row.side[n].first; e < row.side[n].first + row.side[n].count; ++e)
+        y[unknown_[e]] += f.x() * move_[0][e] + f.y() * move_[1][e] + f.z() * move_[2][e];
     }
   }
 }
@@ -470,11 +447,10 @@ void ContactRows<T>::add_sliding(TreeMatrix<T>& matrix) const {
   for (const Row& row : rows_) {
     if (row.sliding <= T(0)) continue;
     for (const Side& side : row.side) {
-      const T* slide = slide_.data() + side.begin + side.depth;
-      for_unknowns(side, [&](int k, int i) {
-        add_combination(matrix.row(k) + side.depth, row.sliding * slide[i], slide, T(0), slide, T(0), slide,
-                        i);
-      });
+      const T* slide = slide_.data() + side.first;
+      for (int i = 0; i < side.count; ++i)
+        add_combination(matrix.row(unknown_[side.first + i]) + side.depth, row.sliding * slide[i], slide,
+                        T(0), slide, T(0), slide, i);
     }
   }
 }
@@ -485,15 +461,11 @@ void ContactRows<T>::multiply_sliding(std::span<const T> x, std::span<T> y) cons
     if (row.sliding <= T(0) || !row.couples()) continue;
     T moved[2] = {};
     for (const int n : {0, 1})
-      for_entries(row.side[n], [&](int first, int e, int count) {
-        for (int i = 0; i < count; ++i) moved[n] += x[first + i] * slide_[e + i];
-      });
-    for (const int n : {0, 1}) {
-      const T pull = row.sliding * moved[1 - n];
-      for_entries(row.side[n], [&](int first, int e, int count) {
-        for (int i = 0; i < count; ++i) y[first + i] += pull * slide_[e + i];
-      });
-    }
+      for (int e = row.side[n].first; e < row.side[n].first + row.side[n].count; ++e)
+        moved[n] += x[unknown_[e]] * slide_[e];
+    for (const int n : {0, 1})
+      for (int e = row.side[n].first; e < row.side[n].first + row.side[n].count; ++e)
+        y[unknown_[e]] += row.sliding * moved[1 - n] * slide_[e];
   }
 }
 
