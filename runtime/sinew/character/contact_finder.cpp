@@ -26,6 +26,8 @@ constexpr double kMostGripped =
     4;  ///< weights that a contact may have to bear, in friction by what is driven
 constexpr double kSlides =
     20;  ///< what slips by as much less than it turns rolls, the more the less it slips
+constexpr double kLeftToEnds =
+    2e-3;  ///< m, that the axes of capsules that lie along each other leave to these
 constexpr double kImpactDepth = 0.005;  ///< m, or half the thickness of what is met
 /// m, where something is driven as a whole: it presses on whatever has stopped what strikes, and loads it.
 constexpr double kImpactDepthDriven = 0.025;
@@ -321,18 +323,19 @@ void ContactFinder<T>::meet_points(int n, int collider, const Met& met, int face
   const CharacterState<T>& s = *states_[n];
   const bool along = lie_along(n, collider, met);
   const Transform<T> pose = along ? pose_of(met) : Transform<T>();
-  const Kinematics<T>& k_own = s.problem.kinematics;
   // Of an end, whether it is beside what it lies along.
   const auto beside = [&](const ContactPoint<T>& p) {
-    const Vec3<T> at = k_own.origin[p.body] + k_own.rotation[p.body] * p.local;
+    const Kinematics<T>& own = s.problem.kinematics;
+    const Vec3<T> at = own.origin[p.body] + own.rotation[p.body] * p.local;
     return p.kind == PointKind::kTip && std::abs((pose.inverse() * at).z()) <= met.size.z();
   };
   for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
     const ContactPoint<T>& point = s.points[k];
     // Two axes need to meet once only.
-    if (along ? !beside(point) : !point.meets(met.shape) || (met.second && point.kind == PointKind::kAxis))
-      continue;
+    const bool axis = point.kind == PointKind::kAxis;
+    if ((along && !axis ? !beside(point) : !point.meets(met.shape)) || (met.second && axis)) continue;
     Contact<T> c = contact_with(met, contact_of(n, point), point.friction);
+    if (along && axis) c.slack = T(kLeftToEnds) * c.length_scale;  // for what turns across it in the step
     c.shape = met.shape;
     c.size = met.size;
     c.hull = met.hull;

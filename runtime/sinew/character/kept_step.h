@@ -17,8 +17,8 @@ auto changed_by_steps(CharacterState<T>& s) {
   return std::tie(s.calm, s.left_to_gravity, s.target_before, s.target_stands, s.local, s.played_from,
                   s.deferred, s.rate, s.rate_before, s.rate_step, s.rate_step_before, s.deviation, s.torque,
                   s.load, s.limit, s.smooth, s.lasting, s.lasting_before, s.unknown, s.history, s.baked,
-                  s.unbaked, s.contact_signature, s.limit_signature, s.steps_unchanged, s.collision_suspended, s.unsolved,
-                  s.energy_ceiling, s.depenetration_energy, s.levels, s.report, s.grounding.rest,
+                  s.unbaked, s.contact_signature, s.limit_signature, s.steps_unchanged, s.collision_suspended,
+                  s.unsolved, s.energy_ceiling, s.depenetration_energy, s.levels, s.report, s.grounding.rest,
                   s.grounding.returns);
 }
 

@@ -181,7 +181,7 @@ struct CharacterState {
   std::uint64_t limit_signature = 0;    ///< of the joint limits that bore
   int steps_unchanged = 0;
   std::uint8_t collision_suspended =
-      0;  ///< steps in which what it is caught in lets it pass: see IslandStepper::freeze
+      0;                      ///< steps in which what it is caught in lets it pass: see IslandStepper::freeze
   std::uint8_t unsolved = 0;  ///< steps in a row whose solves did not converge, as far as kMostUnsolved
   double energy_ceiling =
       std::numeric_limits<double>::infinity();  ///< J, see EnergyBalance; infinite: unknown
