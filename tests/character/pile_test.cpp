@@ -102,6 +102,22 @@ TEST(Pile, InOnePlaceTakesABoundedStep) {
   EXPECT_GT(most, Accuracy().max_passes / 2) << "no step has been hard: the test shows nothing";
 }
 
+// Ten who begin in one place are not solved for half a second; each step of that took 124 passes.
+TEST(Pile, ThatIsNotSolvedTakesFewerPassesInEachStepInARow) {
+  constexpr int kFigures = 10, kLeast = 12, kParts = 4;
+  const auto world = fixtures::pile_of(kFigures);
+  fixtures::put_in_one_place(*world, fixtures::humanoid(), kFigures);
+  int in_a_row = 0, longest = 0;
+  for (int n = 0; n < 60; ++n) {
+    ASSERT_TRUE(world->step(float(kStep)).ok());
+    const CharacterReport& report = world->character(0).report();
+    if (in_a_row >= 3) EXPECT_LE(report.outer_passes, kLeast * kParts) << "step " << n;
+    in_a_row = report.converged ? 0 : in_a_row + 1;
+    longest = std::max(longest, in_a_row);
+  }
+  EXPECT_GE(longest, 10) << "the test shows nothing";
+}
+
 /// Most that the energy (J) of five figures that begin in each other rises above what they had, as a share of
 /// their most kinetic energy.
 double gain_of_entangled(double h) {
