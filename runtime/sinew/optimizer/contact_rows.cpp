@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/optimizer/newton_constants.h"
+#include "sinew/residual/tree_factor_pass.h"
 
 namespace sinew {
 namespace {
@@ -449,8 +450,7 @@ void ContactRows<T>::add_sliding(TreeMatrix<T>& matrix) const {
     for (const Side& side : row.side) {
       const T* slide = slide_.data() + side.first;
       for (int i = 0; i < side.count; ++i)
-        add_combination(matrix.row(unknown_[side.first + i]) + side.depth, row.sliding * slide[i], slide,
-                        T(0), slide, T(0), slide, i);
+        subtract_path(matrix.row(unknown_[side.first + i]) + side.depth, slide, -row.sliding * slide[i], i);
     }
   }
 }
