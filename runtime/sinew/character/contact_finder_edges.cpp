@@ -71,9 +71,15 @@ T overlap_along(const PlacedShape<T>& a, const PlacedShape<T>& b) {
 template <class T>
 bool ContactFinder<T>::lie_along(int n, int collider, const Met& met) const {
   const CharacterState<T>& s = *states_[n];
-  if (met.shape != Shape::kCapsule || s.colliders[collider].shape != Shape::kCapsule) return false;
+  const Collider& capsule = s.colliders[collider];
+  if (met.shape != Shape::kCapsule || capsule.shape != Shape::kCapsule) return false;
+  const Vec3<T> axis = s.problem.kinematics.rotation[capsule.joint] *
+                       (capsule.local.rotation.template cast<T>() * Vec3<T>::UnitZ());
+  Vec3<T> others = met.local.rotation * Vec3<T>::UnitZ();
+  if (met.tree >= 0) others = states_[met.tree]->problem.kinematics.rotation[met.body] * others;
+  if (axis.cross(others).squaredNorm() > T(2 * kAlong * kAlong)) return false;  // nearly all
   const PlacedShape<T> own = placed(n, collider), other = placed(met, s.tree.scale.length);
-  // The same of both, to the last digit, whoever asks.
+  // Either asks: the answer is the same to the last digit.
   const T beside = met.second ? overlap_along(other, own) : overlap_along(own, other);
   if (met.tree < 0) return beside > T(1.99) * own.size.z() && beside > T(0);
   return beside > std::min(own.size.x(), other.size.x());

@@ -284,8 +284,13 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   visit_strengths("activation of a joint", s.activation);
   stream.value("contacts that touched", s.contact_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
-  stream.value("steps of suspended collision", s.collision_suspended);
-  stream.value("unsolved steps", s.unsolved);
+  {
+    constexpr int kSuspended = 64;  // more than there are; the rest of the byte was 0 in snapshots of before
+    auto both = static_cast<std::uint8_t>(s.collision_suspended + kSuspended * s.unsolved);
+    stream.value("steps of suspended collision, and unsolved ones", both);
+    s.collision_suspended = static_cast<std::uint8_t>(both % kSuspended);
+    s.unsolved = static_cast<std::uint8_t>(both / kSuspended);
+  }
   stream.value("energy ceiling", s.energy_ceiling);
   {
     ResidualCoder<double> coder("energy lent by surfaces, stored energy", stream, true);
