@@ -111,7 +111,9 @@ TEST(Pile, ThatIsNotSolvedTakesFewerPassesInEachStepInARow) {
   for (int n = 0; n < 60; ++n) {
     ASSERT_TRUE(world->step(float(kStep)).ok());
     const CharacterReport& report = world->character(0).report();
-    if (in_a_row >= 3) EXPECT_LE(report.outer_passes, kLeast * kParts) << "step " << n;
+    if (in_a_row >= 3) {
+      EXPECT_LE(report.outer_passes, kLeast * kParts) << "step " << n;
+    }
     in_a_row = report.converged ? 0 : in_a_row + 1;
     longest = std::max(longest, in_a_row);
   }
