@@ -92,7 +92,6 @@ constexpr std::initializer_list<KnownFailure> kKnownExcesses = {
     {"limp_fall_bdf1", "73 at most; p99 within 8", true},
     {"limp_fall_bdf2", "47 at most; p99 within 8"},
     {"adjacent_limb_overlap", "42 at most; p99 5", true},
-    {"colliding_figures", "98 in the step in which two meet at 1/30 s, 36 at 1/60; p99 3 at length"},
     {"figure_on_stairs", "55 at most; p99 within 6", true},
     {"figures_in_a_pile", "29 at most; p99 4", true},
     {"sixteen_piles_of_figures", "29 at most; p99 4", true},

@@ -634,10 +634,12 @@ void IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   for (Coupling<T>* c : couplings_) settings_.plan->couplings->close_slowly(h, *c);
 }
 
-/// Most of the trees' unsolved steps: each in a row halves what the next may take. What is jammed, or begins deep
-/// inside something, is not solved by more passes either.
+/// Most of the trees' unsolved steps: each in a row halves what the next may take. What is jammed, or begins
+/// deep inside something, is not solved by more passes either; what is tied, or wears cloth, takes many and
+/// arrives.
 template <class T>
 int IslandStepper<T>::unsolved() const {
+  if (!couplings_.empty()) return 0;
   int most = 0;
   for (const CharacterState<T>* s : states_) most = std::max(most, int(s->unsolved));
   return most;

@@ -17,7 +17,7 @@ struct Accuracy {
   int max_splits = 3;                ///< an unconverged step is halved, and its halves, so often
   /// Outer passes of all solves of a substep together, those repeated with it. Beyond, nothing is halved and
   /// each solve takes a dozen at most, and its lowest pose. After each step in a row that did not converge
-  /// the next one has half as many.
+  /// the next one has half as many, where no loop or particle takes part.
   int max_passes = 100;
   double sink_depth = 5e-4;       ///< how deep one contact point sinks under the character's weight (m)
   double contact_damping = 0.5;   ///< of surfaces; 1 is critical for the character's weight on one point
