@@ -66,8 +66,8 @@ T overlap_along(const PlacedShape<T>& a, const PlacedShape<T>& b) {
 
 /// Whether a collider and what it meets are capsules that lie along each other: the nearest points of their
 /// axes leap from one end to the other as they rock, and no solve finds where they come to rest. Their ends
-/// meet then, each what is beside it, and the axes as far as these would have to go deep. Of what is static
-/// both ends have to be, since it has no points.
+/// meet then, each what is beside it, and the axes only what lies deeper (kLeftToEnds). What is static has no
+/// points: beside it both ends have to be.
 template <class T>
 bool ContactFinder<T>::lie_along(int n, int collider, const Met& met) const {
   const CharacterState<T>& s = *states_[n];

@@ -106,7 +106,7 @@ Vec3<T> at(const Kinematics<T>* k, int body, const Vec3<T>& local) {
 
 namespace {
 
-constexpr double kParallel = 0.05;  ///< rad; lines at less than that slide as if they were
+constexpr double kParallel = 0.05;  ///< rad; lines that are nearer to parallel slide as those at that do
 
 /// Distance between the axis of a (half length `a`, about `from`) and that of a sphere or capsule in its own
 /// axes, and how far along the first the nearest point lies, in [−1, 1]. The distance of two skew axes does

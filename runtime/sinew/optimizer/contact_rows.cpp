@@ -22,11 +22,6 @@ inline void add_combination(T* __restrict path, T a, const T* __restrict x, T b,
 constexpr double kArm = 0.1;  ///< m of a human's
 
 template <class T>
-bool slides(const Contact<T>& c) {
-  return c.sliding.slides && c.expected_force > T(0);
-}
-
-template <class T>
 class ContactRows final : public ContactModel<T> {
  public:
   using Trees = typename ContactModel<T>::Trees;
@@ -92,7 +87,7 @@ class ContactRows final : public ContactModel<T> {
   };
   /// The stiffer direction of force·(lever·μ² − 2μw), turns taken as displacements at kArm.
   struct Slide {
-    T stiffness = T(0);                ///< N/m
+    T stiffness = T(0);                ///< N/m; 0: nothing slides, or nothing presses
     Vec3<T> force = Vec3<T>::Zero();   ///< on a at the contact point, world
     Vec3<T> moment = Vec3<T>::Zero();  ///< m
     explicit Slide(const Contact<T>& contact);
@@ -102,8 +97,8 @@ class ContactRows final : public ContactModel<T> {
     T gap = T(0), slip[2] = {};
   };
 
-  Side add_side(const Contact<T>& contact, int leaf, const Vec3<T>& material, T sign, int above,
-                const TreePattern& pattern, const PathAxes<T>& axes);
+  Side add_side(const Contact<T>& contact, const Slide& slide, int leaf, const Vec3<T>& material, T sign,
+                int above, const TreePattern& pattern, const PathAxes<T>& axes);
   Block block(const Row& row, T drag) const;
   Change along(const Side& side, std::span<const T> direction) const;
   void pull(const Side& side, const Block& block, const Change& change, std::span<T> y) const;
@@ -164,9 +159,9 @@ void ContactRows<T>::reserve(int contacts, int entries) {
 }
 
 template <class T>
-typename ContactRows<T>::Side ContactRows<T>::add_side(const Contact<T>& c, int leaf, const Vec3<T>& material,
-                                                       T sign, int above, const TreePattern& pattern,
-                                                       const PathAxes<T>& axes) {
+typename ContactRows<T>::Side ContactRows<T>::add_side(const Contact<T>& c, const Slide& slide, int leaf,
+                                                       const Vec3<T>& material, T sign, int above,
+                                                       const TreePattern& pattern, const PathAxes<T>& axes) {
   Side side;
   if (leaf < 0 || leaf == above) return side;
   const int whole = pattern.depth[leaf] + 1;
@@ -191,8 +186,7 @@ typename ContactRows<T>::Side ContactRows<T>::add_side(const Contact<T>& c, int 
   project(sign * c.frame.col(1), material, slip_[1]);
   if (c.bends)
     for (int a = 0; a < 3; ++a) project(sign * Vec3<T>::Unit(a), c.point, move_[a]);
-  if (slides(c)) {
-    const Slide slide(c);
+  if (slide.stiffness > T(0)) {
     axes.project(leaf, sign * slide.force, sign * (slide.moment + c.point.cross(slide.force)), whole - 1,
                  slide_.data() + begin);
   }
@@ -226,13 +220,14 @@ void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, 
     const int leaf_a = leaf(c.tree_a, c.body_a), leaf_b = leaf(c.tree_b, c.body_b);
     // What moves both sides alike moves neither gap nor slip.
     const int shared = c.tree_a == c.tree_b ? unknowns.pattern.common(leaf_a, leaf_b) : -1;
-    row.side[0] = add_side(c, leaf_a, c.material_point, T(1), shared, unknowns.pattern, axes);
+    const Slide slide(c);
+    row.side[0] = add_side(c, slide, leaf_a, c.material_point, T(1), shared, unknowns.pattern, axes);
     if (c.tree_b >= 0)
-      row.side[1] = add_side(c, leaf_b, c.material_point_b, T(-1), shared, unknowns.pattern, axes);
+      row.side[1] = add_side(c, slide, leaf_b, c.material_point_b, T(-1), shared, unknowns.pattern, axes);
     if (row.side[0].count + row.side[1].count == 0) continue;
     row.bends = c.expected_force > T(0) && c.bends;
     if (row.bends) row.bending = -c.expected_force * c.bending;
-    if (slides(c)) row.sliding = Slide(c).stiffness;
+    row.sliding = slide.stiffness;
     coupled_ = coupled_ || row.couples();
     rows_.push_back(row);
   }
@@ -435,6 +430,7 @@ void ContactRows<T>::multiply_bending(std::span<const T> x, std::span<T> y) cons
 
 template <class T>
 ContactRows<T>::Slide::Slide(const Contact<T>& c) {
+  if (!c.sliding.slides || !(c.expected_force > T(0))) return;
   const T arm = T(kArm) * c.length_scale, lever = c.sliding.lever / arm;
   const T most = (lever + std::sqrt(lever * lever + T(4))) / T(2);  // eigenvalue of (lever, −1; −1, 0)
   const T length = std::sqrt(most * most + T(1));

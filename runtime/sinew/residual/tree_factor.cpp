@@ -7,14 +7,12 @@ namespace sinew {
 void TreePattern::reserve(int capacity) {
   parent.reserve(capacity);
   depth.reserve(capacity);
-  run.reserve(capacity);
   row.reserve(capacity);
 }
 
 void TreePattern::clear() {
   parent.clear();
   depth.clear();
-  run.clear();
   row.clear();
   size = entries = 0;
 }
@@ -22,7 +20,6 @@ void TreePattern::clear() {
 int TreePattern::add(int above) {
   parent.push_back(above);
   depth.push_back(above < 0 ? 0 : depth[above] + 1);
-  run.push_back(above >= 0 && above == size - 1 ? run[above] : size);
   row.push_back(entries);
   entries += padded(depth.back() + 1);
   return size++;

@@ -23,7 +23,6 @@ struct TreePattern {
 
   std::vector<int> parent;  ///< [unknown] next unknown towards the root, or -1
   std::vector<int> depth;   ///< [unknown] position in its own path = number of unknowns above it
-  std::vector<int> run;     ///< [unknown] first of those that end with it, each the parent of the next
   std::vector<int> row;     ///< [unknown] first entry of its path in the value array
   int size = 0;
   int entries = 0;  ///< of the value array, padding included

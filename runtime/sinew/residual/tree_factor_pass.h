@@ -59,15 +59,16 @@ auto factorise_tree(const TreePattern& p, T* values, std::span<T> diagonal) {
   return definite;
 }
 
-/// Solves LᵀL·x = b in place, with the factor that factorise_tree left. Up to the root with three unknowns of
-/// a run at a time (a ball joint's), in the order of one after the other: the way is gone once for them.
+/// Solves LᵀL·x = b in place, with the factor that factorise_tree left. Up to the root with three unknowns at
+/// a time where each is the next one's parent (a ball joint's), in the order of one after the other: the way
+/// is gone once for them.
 template <class T>
 void solve_by_tree(const TreePattern& p, const T* values, std::span<T> b) {
   for (int k = p.size - 1; k >= 0;) {  // Lᵀ y = b
     const T* last = values + p.row[k];
     int position = p.depth[k];
     const T y2 = b[k] *= last[position];
-    if (k - p.run[k] < 2) {
+    if (k < 2 || p.parent[k] != k - 1 || p.parent[k - 1] != k - 2) {
       --position;
       for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) b[l] -= last[position] * y2;
       --k;
