@@ -400,6 +400,7 @@ class Classes(unittest.TestCase):
         self.assertAlmostEqual(hero.displacement[0], 0.01)
         hero.come_back()
         hero.give_hand()
+        hero.keep_out(0.002)
         self.assertEqual([scene.world.count(k) for k in (sinew.BodyKind.CHARACTER, sinew.BodyKind.PROP)], [1, 1])
         self.assertNotEqual(scene.world.snapshot_field(100)[1], "")
         scene.world.add_convex_solid([(0, 0, 1, 0.5), (0, 0, -1, 0.5)], 0.5)

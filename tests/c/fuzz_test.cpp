@@ -191,7 +191,9 @@ class Sequence : FuzzMotion {
     const float velocity[3] = {real(-5, 5), real(-5, 5), real(-5, 5)};
     const double* const way = triple(rarely() ? 1e3 : 0.05);
     const double ride[4] = {way ? way[0] : 0, way ? way[1] : 0, way ? way[2] : 0, number(-0.05, 0.05)};
-    switch (below(7)) {
+    switch (below(8)) {
+      case 7:
+        return sinew_character_keep_out(handle(people_), number(-0.01, 0.05));
       case 6:
         return sinew_character_give_hand(handle(people_));
       case 4:

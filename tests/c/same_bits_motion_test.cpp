@@ -72,6 +72,7 @@ std::vector<float> ride_in_cpp(Displacement& displaced) {
     }
     if (frame > kPushedAt) {
       EXPECT_TRUE(hero.give_hand());
+      EXPECT_TRUE(hero.keep_out(2e-3));
     }
     if (frame == kLedBackAt) {
       EXPECT_TRUE(hero.come_back());
@@ -116,6 +117,7 @@ TEST(CInterfaceRides, GoTheWayOfTheSameRunInCpp) {
     }
     if (frame > kPushedAt) {
       EXPECT_EQ(sinew_character_give_hand(scene.hero), SINEW_OK) << sinew_last_reason();
+      EXPECT_EQ(sinew_character_keep_out(scene.hero, 2e-3), SINEW_OK) << sinew_last_reason();
     }
     if (frame == kLedBackAt) {
       EXPECT_EQ(sinew_character_come_back(scene.hero), SINEW_OK) << sinew_last_reason();
@@ -143,6 +145,8 @@ TEST(CInterfaceRides, WhatCannotBeMeantIsRefused) {
   expect_refused(sinew_character_ride(scene.hero, nullptr), SINEW_INVALID_ARGUMENT, "null");
   expect_refused(sinew_character_come_back(scene.world), SINEW_BAD_HANDLE, "another kind");
   expect_refused(sinew_character_give_hand(scene.world), SINEW_BAD_HANDLE, "another kind");
+  expect_refused(sinew_character_keep_out(scene.world, 0), SINEW_BAD_HANDLE, "another kind");
+  expect_refused(sinew_character_keep_out(scene.hero, kNan), SINEW_INVALID_ARGUMENT, "no number");
 }
 
 // ---- What was set is read again ----

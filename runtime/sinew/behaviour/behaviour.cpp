@@ -125,6 +125,8 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   see_flight(double(h));
   if (acts || last_step_.root_unknown) act(character, jets, h);
   ride(character, jets[0], double(h));
+  if (report_.state != BehaviourState::kClip && !fallen() && !is_rising())
+    (void)character.keep_out(clip_presses_);
   (void)character.set_self_collision(fallen()      ? SelfCollision::kOn   // nothing else keeps limbs apart
                                      : is_rising() ? SelfCollision::kOff  // clips do not know what is caught
                                                    : SelfCollision::kAsCreated);
@@ -284,6 +286,8 @@ void Behaviour<T>::see_clip(const Character<T>& character, std::span<const Joint
     ground_ =
         known ? *known : std::min(body_.lowest_of(0, clip_ankle_[0]), body_.lowest_of(1, clip_ankle_[1]));
   if (!leveled_) level_ = ground_;
+  const std::span<const MovingTransform<T>> model(model_);
+  clip_presses_ = std::max(ground_ - std::min(body_.lowest_of(0, model), body_.lowest_of(1, model)), 0.0);
   from_clip_ = clip_body_ - middle;
   // A host may have turned feet to the ground: what they stand on is level, or sloped as the ground is,
   // whichever their soles are nearer to.

@@ -281,6 +281,7 @@ class Behaviour {
   std::array<Vec2, 2> clip_foot_;          ///< m, the clip's ankles from its centre of mass
   Vec3<double> clip_acceleration_ = Vec3<double>::Zero();  ///< m/s², of its centre of mass
   Vec2 clip_body_ = Vec2::Zero(), clip_velocity_ = Vec2::Zero();
+  double clip_presses_ = 0;  ///< m, into its ground with its feet
   LastStep last_step_;
   bool restored_ = false;  ///< that is the restored world's
   Quat<double> clip_root_ = Quat<double>::Identity();

@@ -330,6 +330,10 @@ sinew_status sinew_character_give_hand(sinew_character character) {
   return change(character, [](Character<float> c) { return c.give_hand(); });
 }
 
+sinew_status sinew_character_keep_out(sinew_character character, double most) {
+  return change(character, [&](Character<float> c) { return c.keep_out(most); });
+}
+
 sinew_status sinew_character_apply_impulse(sinew_character character, int32_t joint, const double* point,
                                            const double* impulse) {
   return push(character, point, impulse,

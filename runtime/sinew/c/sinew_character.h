@@ -233,6 +233,9 @@ SINEW_API sinew_status sinew_character_come_back(sinew_character character);
 /// In the next step a grounded root that is free may be given, besides its help, as much as its target asks
 /// of no floor at all, as a run does that pushes off before its feet are down. Metered as help.
 SINEW_API sinew_status sinew_character_give_hand(sinew_character character);
+/// Its target of the next step is somebody's plan, who knows what is around: of that it may lie `most` m in
+/// things, where of a clip 3 cm of a human may in what stands, and 1 cm in what moves.
+SINEW_API sinew_status sinew_character_keep_out(sinew_character character, double most);
 /// A hit: impulse [3] (N s, world) at a world point [3] on a joint's body, at the beginning of the next step.
 SINEW_API sinew_status sinew_character_apply_impulse(sinew_character character, int32_t joint,
                                                      const double point[3], const double impulse[3]);

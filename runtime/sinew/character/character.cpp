@@ -317,6 +317,14 @@ Status Character<T>::give_hand() {
 }
 
 template <class T>
+Status Character<T>::keep_out(double most) {
+  if (!state_) return nobody();
+  if (!(most >= 0)) return Status::error(Code::kInvalidArgument, "a depth that is negative or no number");
+  state_->grounding.presses = most;
+  return {};
+}
+
+template <class T>
 Status Character<T>::set_help(double force, double torque) {
   if (!state_) return nobody();
   if (std::isnan(force) || std::isnan(torque)) return Status::error(Code::kNotFinite, "help is not a number");

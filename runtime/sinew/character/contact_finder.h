@@ -137,6 +137,7 @@ class ContactFinder final : public ContactSearch<T> {
   PlacedCollider<T> collider_at(int n, std::size_t collider, const Kinematics<T>& kinematics) const;
   bool driven_through(int n, const Collider& obstacle) const;
   bool driven_through(int n, int m) const;
+  T pressed_at_most(const Contact<T>& contact) const;
   void allow_pressed(Contact<T>& contact) const;
   /// About the common origin.
   Transform<T> pose_of(const Collider& obstacle) const {
@@ -178,6 +179,7 @@ class ContactFinder final : public ContactSearch<T> {
   void add(Contact<T>& contact, T reach);
   bool reserve();
   int way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const;
+  int way_in(int n, int collider, const Met& met) const;
   int way_out_of_hull(int n, int collider, const Met& met) const;
   void go_on_below(T unit, const Vec3<T>& other, Met& box) const;
   void begin_all();

@@ -86,6 +86,17 @@ bool ContactFinder<T>::driven_through(int n, int m) const {
   return false;
 }
 
+/// m, that clips may press the two sides of a contact into each other.
+template <class T>
+T ContactFinder<T>::pressed_at_most(const Contact<T>& c) const {
+  const CharacterState<T>&a = *states_[c.tree_a], *b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
+  const double planned = b ? std::min(a.grounding.presses, b->grounding.presses) : a.grounding.presses;
+  if (c.plane && a.root_is_kinematic()) return T(std::min(planned, double(std::numeric_limits<T>::max())));
+  const bool stands = !b || a.is_carrier() || b->is_carrier();
+  const T most = T(stands ? kPressedByClips : kPressedIntoOthers) * c.length_scale;
+  return T(std::min({planned, double(most), double(half_thickness(c) / 2)}));
+}
+
 /// What clips press a little may lie in each other; what they press deeper is kept out the more. And what no
 /// unknown moves may go a little further: muscles lead that, with all their strength against a millimetre.
 template <class T>
@@ -95,9 +106,7 @@ void ContactFinder<T>::allow_pressed(Contact<T>& c) const {
   if (follows == Follows::kNot) return;
   Contact<T> wanted = c;
   measure<T>(states_[c.tree_a]->guessed, c.tree_b < 0 ? nullptr : &states_[c.tree_b]->guessed, wanted);
-  const T most = c.plane && states_[c.tree_a]->root_is_kinematic()
-                     ? std::numeric_limits<T>::infinity()
-                     : std::min(T(kPressedByClips) * c.length_scale, half_thickness(c) / 2);
+  const T most = pressed_at_most(c);
   const T clip = std::max(-wanted.gap, T(0)), driven = follows == Follows::kExactly ? T(kDrivenInto) : T(0);
   const T allowed = clip > most ? std::max(2 * most - clip, T(0)) : clip;
   const T pressed = std::min(allowed + driven * c.length_scale, most);
@@ -127,6 +136,7 @@ bool ContactFinder<T>::give_way(Contact<T>& c) const {
   template PlacedCollider<T> ContactFinder<T>::collider_at(int, std::size_t, const Kinematics<T>&) const; \
   template bool ContactFinder<T>::driven_through(int, const Collider&) const;                             \
   template bool ContactFinder<T>::driven_through(int, int) const;                                         \
+  template T ContactFinder<T>::pressed_at_most(const Contact<T>&) const;                                  \
   template void ContactFinder<T>::allow_pressed(Contact<T>&) const;                                       \
   template bool ContactFinder<T>::give_way(Contact<T>&) const;
 SINEW_CLIP_INSTANCES(float)

@@ -298,13 +298,13 @@ void look_around(CharacterState<T>& s, const WorldSettings& world, const Surroun
 template <class T>
 bool is_in_the_way(CharacterState<T>& s, Nearby<T>& nearby) {
   if (!nearby.any()) return false;
-  const T pressed = T(kPressedByClips) * nearby.unit;
   place_now(s, nearby.origin, nearby.now);
   place_at(s, s.target, nearby.origin, nearby.after);
   const ColliderPaths<T> paths{nearby.now, nearby.after};
-  const auto meets = [&](const PlacedCollider<T>& from, const PlacedCollider<T>& to, double base) {
+  const T into_others = T(kPressedIntoOthers) * nearby.unit, pressed = T(kPressedByClips) * nearby.unit;
+  const auto meets = [&](const PlacedCollider<T>& from, const PlacedCollider<T>& to, T most, double base) {
     const T thin = T(half_thickness_of(*from.collider, base, double(nearby.unit)));
-    return touch_on_the_way<T>(paths, {{&from, 1}, {&to, 1}}, std::min(pressed, thin / 2));
+    return touch_on_the_way<T>(paths, {{&from, 1}, {&to, 1}}, std::min(most, thin / 2));
   };
   constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
   return std::any_of(nearby.obstacles.begin(), nearby.obstacles.end(),
@@ -312,11 +312,13 @@ bool is_in_the_way(CharacterState<T>& s, Nearby<T>& nearby) {
                        Transform<double> pose = o->local;
                        pose.translation -= nearby.origin;
                        const PlacedCollider<T> placed{o, pose.cast<T>(), T(bounding_radius(*o))};
-                       return meets(placed, placed, nearby.base);
+                       return meets(placed, placed, pressed, nearby.base);
                      }) ||
-         std::any_of(
-             nearby.moving.begin(), nearby.moving.end(),
-             [&](const MovingShape<T>& o) { return meets(o.from, o.to, kNoFloor) || push(paths, o); }) ||
+         std::any_of(nearby.moving.begin(), nearby.moving.end(),
+                     [&](const MovingShape<T>& o) {
+                       const T most = o.of->is_carrier() ? pressed : into_others;
+                       return meets(o.from, o.to, most, kNoFloor) || push(paths, o);
+                     }) ||
          std::any_of(nearby.hosts.begin(), nearby.hosts.end(), [&](const HostObstacle& o) {
            const T thin = T(o.shape->half_thickness());
            return goes_into(s, paths, nearby.origin, *o.shape, std::min(pressed, thin / 2), thin);

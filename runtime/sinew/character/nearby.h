@@ -84,8 +84,9 @@ template <class T>
 void look_around(CharacterState<T>& state, const WorldSettings& world, const Surroundings& around,
                  const Members<T>& members, T h, Nearby<T>& out);
 
-/// Whether the animation goes into something of it on its way to the target, deeper than kPressedByClips, or
-/// pushes who or what gives way: a figure, or a prop but from above. O(colliders) for each.
+/// Whether the animation goes into something of it on its way to the target, deeper than kPressedByClips
+/// (kPressedIntoOthers), or pushes who or what gives way: a figure, or a prop but from above. O(colliders)
+/// for each.
 template <class T>
 bool is_in_the_way(CharacterState<T>& state, Nearby<T>& nearby);
 

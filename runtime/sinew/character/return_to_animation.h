@@ -12,6 +12,9 @@ namespace sinew {
 /// that leans on something: as deep it may lie there, 3 cm with what the contact gives. What they press by
 /// more is kept out, twice that wholly.
 constexpr double kPressedByClips = 0.027;
+/// The same of figures and props, unless what bears them is a platform: nobody made the clip for where they
+/// are.
+constexpr double kPressedIntoOthers = 0.01;
 
 /// From the common origin, at `origin_height` in the world (m); −∞ without a floor.
 template <class T>

@@ -334,6 +334,7 @@ void visit_inputs(CharacterState<T>& s, ByteStream& stream) {
   stream.flag("comes back", s.grounding.comes_back);
   stream.flag("rides", s.grounding.rides);
   stream.flag("has a hand", s.grounding.has_hand);
+  stream.value("presses, m", s.grounding.presses);
   for (JointJet<T>& jet : s.target) {
     stream.rotation("target rotation", jet.rotation);
     stream.vector("target angular velocity", jet.omega);

@@ -79,6 +79,8 @@ struct Grounding {
   RootWrench<T> hand;  ///< in this step: what no floor could give to what its animation does
   /// m, of what its animation last stood on, but for `by`.
   double level = std::numeric_limits<double>::max();
+  /// m, that its target may lie in things in this step: Character::keep_out().
+  double presses = std::numeric_limits<double>::max();
   bool by_hand = false;     ///< whether that is left to an invisible hand
   bool leads = false;       ///< its root is borne where the animation has it, in this step
   bool comes_back = false;  ///< Character::come_back() in this step

@@ -286,6 +286,9 @@ class Character {
   /// of no floor at all: a run is at fault itself where it pushes off before its feet are down, and who was
   /// pushed while he runs would fall from that. Metered as help.
   Status give_hand();
+  /// Its target of the next step is somebody's plan, who knows what is around: of that it may lie `most` m
+  /// in things, where of a clip 3 cm of a human may in what stands, and 1 cm in what moves.
+  Status keep_out(double most);
   /// What may hold a grounded root besides the ground from now on, N and N·m; negative: as in its settings.
   Status set_help(double force, double torque);
   /// How much work it may get from the next step on. Refuses what validate() does; `detail` stays then.

@@ -333,6 +333,7 @@ void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const
     s->forces.clear();
     s->target_stands = true;
     s->grounding.comes_back = s->grounding.rides = false;
+    s->grounding.presses = std::numeric_limits<double>::max();
     if (std::exchange(s->grounding.has_hand, false)) s->refresh_limits();
     s->report.carried = s->carried;
   }

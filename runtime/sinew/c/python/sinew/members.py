@@ -152,6 +152,10 @@ class Character(_Affected):
         """In the next step a free root may be given, besides its help, what its target asks of no floor at all."""
         self._call(lib.sinew_character_give_hand)
 
+    def keep_out(self, most):
+        """The target of the next step is a plan: of it `most` m may lie in what is around, of a clip 3 cm."""
+        self._call(lib.sinew_character_keep_out, most)
+
     @property
     def ground(self):
         """What bears it: force (N, up), place (m), velocity (m/s) and turn rate (rad/s) of that."""
