@@ -26,6 +26,7 @@ constexpr double kSame = 0.01;                           ///< m
 constexpr double kOffSlope = 0.13;  ///< rad, of a slope from what the animation stands on, that topples it
 constexpr double kFallen = 0.6;     ///< of the root's height
 constexpr double kSquats = 0.4;     ///< likewise, while it lands
+constexpr double kErrs = 5e-3;      ///< m, that a plan may take feet into the ground: none is exact
 constexpr double kUpright = 0.77;   ///< cos 40°: who tilts further from the clip falls
 constexpr double kOffPlan = 0.1, kOffPlanSpeed = 1;  ///< m, m/s: a plan that fails is made again
 constexpr double kSeen = 0.03, kTrusted = 0.5;       ///< s; how far feet go by where the body is instead
@@ -125,8 +126,7 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   see_flight(double(h));
   if (acts || last_step_.root_unknown) act(character, jets, h);
   ride(character, jets[0], double(h));
-  if (report_.state != BehaviourState::kClip && !fallen() && !is_rising())
-    (void)character.keep_out(clip_presses_);
+  if (walks_) (void)character.keep_out(std::max(clip_presses_, kErrs * unit_));
   (void)character.set_self_collision(fallen()      ? SelfCollision::kOn   // nothing else keeps limbs apart
                                      : is_rising() ? SelfCollision::kOff  // clips do not know what is caught
                                                    : SelfCollision::kAsCreated);

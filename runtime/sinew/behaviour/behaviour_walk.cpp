@@ -35,7 +35,9 @@ constexpr double kAirborne = 0.03;   ///< s that nothing bears it, from which it
 constexpr double kSags = 0.02;       ///< m, that it may be lower than that before, or a foot higher
 constexpr double kSameLevel = 5e-3;  ///< m, that ground may be higher or lower than its animation's
 constexpr double kPresses = 0.1;     ///< m, that its feet press elsewhere than its animation's
-constexpr double kReaches = 0.02;    ///< m, that an animation's soles may be over what bears them
+constexpr double kTurnsBack = 3,
+                 kWhips = 10;      ///< times, and rad/s: a leg that turns back in a frame may arrive faster
+constexpr double kReaches = 0.02;  ///< m, that an animation's soles may be over what bears them
 // What it may be off when it is led back, and more by this share for every step after the second.
 constexpr double kNearly = 0.04, kNearlySpeed = 0.12, kLater = 0.25;  ///< m, m/s
 constexpr double kNearlyPace = 0.1;                                   ///< of its pace: the same of who runs
@@ -322,7 +324,7 @@ void Behaviour<T>::write_walk(std::span<JointJet<T>> jets, double h) {
 }
 
 /// A knee that is all but straight passes through any rate: as legs go in this frame, where that does not
-/// lead them there. They would arrive with it.
+/// lead them there, or not nearly as fast. They would arrive with it.
 template <class T>
 void Behaviour<T>::calm_legs(std::span<JointJet<T>> jets, T h) const {
   for (const FootLeg<T>& leg : body_.legs)
@@ -330,7 +332,8 @@ void Behaviour<T>::calm_legs(std::span<JointJet<T>> jets, T h) const {
       const JointJet<T>& before = last_[static_cast<std::size_t>(joint)];
       JointJet<T>& now = jets[static_cast<std::size_t>(joint)];
       const Vec3<T> turned = rotation_log<T>(before.rotation.conjugate() * now.rotation);
-      if (!are_foreign<T>(turned, h * before.omega, h * now.omega)) continue;
+      const T whips = T(kTurnsBack) * turned.norm() / h + T(kWhips / std::sqrt(unit_));
+      if (!are_foreign<T>(turned, h * before.omega, h * now.omega) && now.omega.norm() < whips) continue;
       now.omega = turned / h;
       now.alpha.setZero();
     }
