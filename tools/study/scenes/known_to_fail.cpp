@@ -22,9 +22,6 @@ const char* known_to_fail(const std::string& situation) {
        "the waist no faster than it can stop them (40 mm where it may use twice as much of its strength), "
        "and "
        "the return alone takes 0.92 s from a metre to a millimetre"},
-      {"columns",
-       "at 120 Hz two are 30.4 mm in each other, 30 wanted: of what clips press 27 mm may be; and when "
-       "they are through some are up to 12 mm off their clips, 10 wanted"},
       {"weak_arm", "20 % of the hand's way at 120 Hz, 5 % at 60 and 1 % at 30: a hand of 1 N m is flung"},
       {"walk_on_boards",
        "at 30 Hz a foot dips between two boards on its straight way from frame to frame and is caught by "

@@ -104,6 +104,25 @@ void bat(const Scene& scene, bool, Findings& found) {
   });
 }
 
+/// m: the mannequin's own walk takes its toes so far into the floor, and a little more.
+constexpr double kToesOfItsWalk = 0.015;
+
+/// Nobody is deeper in another than `most` m.
+void walk_into_each_other(const Scene& scene, double most, Findings& found) {
+  at_rates(scene, kRates, 1, kToesOfItsWalk, found, [&](const Played&, const Judge& judge) {
+    found.at_most("in each other (m)",
+                  judge.worst(1, judge.frames() - 1, [&](int f) { return judge.depth_between(f); }), most);
+  });
+}
+
+void door(const Scene& scene, bool, Findings& found) {
+  walk_into_each_other(scene, 5e-3, found);
+}
+
+void crossing(const Scene& scene, bool, Findings& found) {
+  walk_into_each_other(scene, 0.015, found);
+}
+
 }  // namespace
 
 std::vector<Situation> situations_of_things() {
@@ -113,6 +132,8 @@ std::vector<Situation> situations_of_things() {
       {"gyroscope", "a top goes round instead of falling", gyroscope},
       {"trolley", "nothing brakes a trolley", trolley},
       {"flywheels", "wheels on hinges spin on", flywheels},
+      {"door", "who walks against a door kicks it open", door},
+      {"crossing", "who stumble over each other tread on the floor, not in it", crossing},
       {"bat", "a bat gives a ball its own speed, too", bat},
   };
 }

@@ -1,4 +1,5 @@
-// Situations of things that nobody animates but what leads or hits them: wheels, tops, lifts, bats.
+// Situations of things that nobody animates but what leads or hits them: wheels, tops, lifts, bats, and doors
+// and crates that somebody walks into.
 #pragma once
 
 #include <vector>
