@@ -35,9 +35,9 @@ constexpr double kAirborne = 0.03;   ///< s that nothing bears it, from which it
 constexpr double kSags = 0.02;       ///< m, that it may be lower than that before, or a foot higher
 constexpr double kSameLevel = 5e-3;  ///< m, that ground may be higher or lower than its animation's
 constexpr double kPresses = 0.1;     ///< m, that its feet press elsewhere than its animation's
-constexpr double kTurnsBack = 3,
-                 kWhips = 10;      ///< times, and rad/s: a leg that turns back in a frame may arrive faster
-constexpr double kReaches = 0.02;  ///< m, that an animation's soles may be over what bears them
+constexpr double kReaches = 0.02;    ///< m, that an animation's soles may be over what bears them
+// What a leg may be asked to arrive with in a frame: so many times its mean, and rad/s more.
+constexpr double kTurnsBack = 3, kWhips = 10;
 // What it may be off when it is led back, and more by this share for every step after the second.
 constexpr double kNearly = 0.04, kNearlySpeed = 0.12, kLater = 0.25;  ///< m, m/s
 constexpr double kNearlyPace = 0.1;                                   ///< of its pace: the same of who runs

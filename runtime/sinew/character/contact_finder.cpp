@@ -274,9 +274,9 @@ int ContactFinder<T>::way_in(int n, int collider, const Met& met) const {
   Vec3<T> velocity = s.point_velocity(body, bound.center);
   if (met.tree >= 0) velocity -= states_[met.tree]->point_velocity(met.body, bound.center);
   const T fastest = velocity.norm() + angular_velocity(s.history, body).norm() * bound.radius;
-  const Polyhedron other(placed(met, s.tree.scale.length).template cast<double>());
-  if (!(double(h_ * fastest) > other.thinnest())) return -1;
-  const Polyhedron own(placed(n, collider).template cast<double>());
+  if (!(h_ * fastest > (met.shape == Shape::kBox ? met.size.minCoeff() : met.size.x()))) return -1;
+  const Polyhedron own(placed(n, collider).template cast<double>()),
+      other(placed(met, s.tree.scale.length).template cast<double>());
   int last = -1;
   double latest = 0;
   for (std::size_t f = 0; f < other.normals().size(); ++f) {
