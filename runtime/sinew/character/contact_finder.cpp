@@ -274,7 +274,7 @@ int ContactFinder<T>::way_in(int n, int collider, const Met& met) const {
   Vec3<T> velocity = s.point_velocity(body, bound.center);
   if (met.tree >= 0) velocity -= states_[met.tree]->point_velocity(met.body, bound.center);
   const T fastest = velocity.norm() + angular_velocity(s.history, body).norm() * bound.radius;
-  if (!(h_ * fastest > (met.shape == Shape::kBox ? met.size.minCoeff() : met.size.x()))) return -1;
+  if (!(h_ * fastest > thinnest(met.shape, met.size))) return -1;
   const Polyhedron own(placed(n, collider).template cast<double>()),
       other(placed(met, s.tree.scale.length).template cast<double>());
   int last = -1;

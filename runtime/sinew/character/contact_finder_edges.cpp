@@ -170,11 +170,8 @@ void ContactFinder<T>::meet_solids(int n, int collider, const Met& met, T reach)
   c.size = met.size;
   c.hull = met.hull;
   c.shape_pose = met.local;
-  const auto thinnest = [](Shape shape, const auto& size) {
-    return shape == Shape::kBox ? T(size.minCoeff()) : T(size.x());
-  };
-  c.slack = std::min(T(kSlack) * c.length_scale,
-                     T(kSlackPart) * std::min(thinnest(own.shape, own.size), thinnest(met.shape, met.size)));
+  c.slack = std::min(T(kSlack) * c.length_scale, T(kSlackPart) * std::min(T(thinnest(own.shape, own.size)),
+                                                                          thinnest(met.shape, met.size)));
   c.id = id_of(n, feature(kSolidNumber, 0, collider), met);
   add(c, reach);
 }

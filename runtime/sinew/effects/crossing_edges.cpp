@@ -13,11 +13,6 @@ namespace {
 constexpr double kFlat = 0.1;    ///< sine: how far from a face's normal both edges of the face support
 constexpr double kAsGood = 0.1;  ///< of the thinnest half extent: a direction parts no worse than the best
 
-template <class T>
-T thinnest(const PlacedShape<T>& s) {
-  return s.shape == Shape::kBox ? s.size.minCoeff() : s.size.x();
-}
-
 /// The edges with a direction that support a solid towards `outwards`. Returns how many.
 template <class T>
 int supporting(const PlacedShape<T>& s, int direction, const Vec3<T>& outwards, std::array<Edge<T>, 4>& out) {
@@ -94,7 +89,8 @@ void CrossingEdges<T>::find(const PlacedShape<T>& a, const PlacedShape<T>& b) {
   const SeparatingAxes<T> axes(a, b);
   const Vec3<T> between = a.center - b.center;
   apart = axes.distance;
-  const T least = std::min(apart, T(0)) - T(kAsGood) * std::min(thinnest(a), thinnest(b));
+  const T least =
+      std::min(apart, T(0)) - T(kAsGood) * std::min(thinnest(a.shape, a.size), thinnest(b.shape, b.size));
   for (int i = axes.first_a; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       if (axes.by[3 * i + j] < least) continue;

@@ -41,6 +41,12 @@ struct PlacedShape {
       : shape(of), size(measures), center(at), rotation(turned), unit(length_unit), hull(of_hull) {}
 };
 
+/// m: half of where a shape of that size (as Collider::size) is thinnest, or less.
+template <class T>
+T thinnest(Shape shape, const Vec3<T>& size) {
+  return shape == Shape::kBox ? size.minCoeff() : size.x();
+}
+
 /// How far a solid is from another (m, negative: by how much they overlap), and the direction in which a
 /// leaves b, by the best of the axes that separate boxes (Gottschalk, Lin and Manocha, "OBBTree", 1996):
 /// where corners or a capsule's ends are nearest, they are further apart than that. About 200 flops; of
