@@ -48,6 +48,10 @@ void Couplings<T>::count_in(States states, double gravity, SolveCapacities& room
     capacity.tetrahedra = static_cast<int>(c->tetrahedra.size());
     for (const CouplingNode<T>& node : c->nodes)
       if (node.state >= 0) capacity.node_entries += path_entries(states[node.state]->tree, node.body);
+    if (c->closes_slowly) {
+      capacity.loops = capacity.stencils;
+      capacity.loop_entries = capacity.node_entries;
+    }
     rooms.all += capacity;
     const int first = first_tree(*c);
     for_each_tree(*c, [&](int n) {

@@ -75,6 +75,19 @@ void rotation_svd(const Mat3<T>& f, Mat3<T>& u, Vec3<T>& sigma, Mat3<T>& v) {
     }
 }
 
+/// Second derivative with the stiffness along a stencil, and across it the share of that by a function of
+/// what its stretch leaves. A compressed one would buckle: cut off.
+template <class T, class Function>
+Mat3<T> curvature_with(const Coupling<T>& c, const Stencil<T>& e, T stiffness, const Function& share) {
+  if (e.length <= T(0)) return stiffness * Mat3<T>::Identity();
+  const Vec3<T> s = reach(c, e) - e.offset;
+  const T size = s.norm(), length = e.length - e.shortened;
+  if (size <= T(0) || (e.only_pulls && size <= length)) return Mat3<T>::Zero();
+  const T across = share(std::max(T(1) - length / size, T(0)));
+  const Vec3<T> along = s / size;
+  return stiffness * (across * Mat3<T>::Identity() + (T(1) - across) * (along * along.transpose()));
+}
+
 }  // namespace
 
 bool set_rest_shape(const Vec3<double> corners[4], Tetrahedron<double>& out) {
@@ -124,13 +137,12 @@ double measure_elements(Coupling<T>& c) {
 
 template <class T>
 Mat3<T> stencil_curvature(const Coupling<T>& c, const Stencil<T>& e) {
-  if (e.length <= T(0)) return e.stiffness * Mat3<T>::Identity();
-  const Vec3<T> s = reach(c, e) - e.offset;
-  const T size = s.norm(), length = e.length - e.shortened;
-  if (size <= T(0) || (e.only_pulls && size <= length)) return Mat3<T>::Zero();
-  const T across = std::max(T(1) - length / size, T(0));  // a compressed spring would buckle: cut off
-  const Vec3<T> along = s / size;
-  return e.stiffness * (across * Mat3<T>::Identity() + (T(1) - across) * (along * along.transpose()));
+  return curvature_with(c, e, e.stiffness, [](T share) { return share; });
+}
+
+template <class T>
+Mat3<T> stencil_root(const Coupling<T>& c, const Stencil<T>& e) {
+  return curvature_with(c, e, std::sqrt(e.stiffness), [](T share) { return std::sqrt(share); });
 }
 
 template <class T>

@@ -161,6 +161,9 @@ double measure_elements(Coupling<T>& coupling);
 /// Second derivative by Σ wᵢ xᵢ, N/m, without what makes it indefinite: node pair (i, j) sees wᵢwⱼ times it.
 template <class T>
 Mat3<T> stencil_curvature(const Coupling<T>& coupling, const Stencil<T>& stencil);
+/// Its symmetric root, √(N/m).
+template <class T>
+Mat3<T> stencil_root(const Coupling<T>& coupling, const Stencil<T>& stencil);
 
 /// Second derivative by the four points (x₀, y₀, z₀, x₁, …), N/m, negative eigenvalues cut off (analytic
 /// eigensystem of the paper).
@@ -194,6 +197,7 @@ bool tighten(Coupling<T>& coupling);
 #define SINEW_COUPLING_INSTANCES(prefix, T)                                                         \
   prefix double measure_elements<T>(Coupling<T>&);                                                  \
   prefix Mat3<T> stencil_curvature<T>(const Coupling<T>&, const Stencil<T>&);                       \
+  prefix Mat3<T> stencil_root<T>(const Coupling<T>&, const Stencil<T>&);                            \
   prefix TetrahedronHessian<T> tetrahedron_curvature<T>(const Coupling<T>&, const Tetrahedron<T>&); \
   prefix bool tighten<T>(Coupling<T>&);                                                             \
   prefix void close_slowly<T>(T, Coupling<T>&);

@@ -2,13 +2,15 @@
 //
 // Each side of a contact moves with the unknowns on one path of its tree, so its rows are stored root first,
 // component by component: adding a contact to a tree matrix is a contiguous vector update per unknown. What
-// couples two sides leaves the tree's sparsity and is only ever applied as a product (see multiply).
+// couples two sides leaves the tree's sparsity: it is applied as a product (see multiply), or joined to the
+// factor as rows (row_factor.h).
 #pragma once
 
 #include <memory>
 #include <span>
 
 #include "sinew/optimizer/problem.h"
+#include "sinew/optimizer/row_factor.h"
 
 namespace sinew {
 
@@ -37,8 +39,9 @@ class ContactModel {
   virtual void collect(Trees /*trees*/, std::span<const Contact<T>> /*contacts*/,
                        const Unknowns& /*unknowns*/, const PathAxes<T>& /*axes*/, T /*near*/, T /*stick*/) {}
   virtual bool empty() const { return true; }
-  /// Some contact has unknowns on both sides.
+  /// Some contact has unknowns on both sides; of one of those the surface bends.
   virtual bool coupled() const { return false; }
+  virtual bool bends_across() const { return false; }
 
   /// Changes of gaps and slips along a direction, for slope() and move().
   virtual void look_along(std::span<const T> /*direction*/) {}
@@ -51,17 +54,23 @@ class ContactModel {
   virtual void correct(std::span<const Contact<T>> /*contacts*/) {}
   /// Gaps and slips as the contacts have them now.
   virtual void measure(std::span<const Contact<T>> /*contacts*/) {}
-  /// Whether the last factor is still good: no curvature has changed much (see add_curvature() for `drag`).
-  virtual bool in_factor(T /*drag*/) const { return true; }
+  /// Whether the last factor is still good: no curvature has changed much since measure_curvature(). Where
+  /// what couples two sides was left to products, as `apart` says: none that there is.
+  virtual bool in_factor(T /*drag*/, bool /*apart*/) const { return true; }
   /// Tells the contacts the normal forces at the inner solution.
   virtual void expect_forces(std::span<Contact<T>> /*contacts*/) const {}
 
   /// gradient += ∂E/∂d at the present gaps and slips.
   virtual void add_gradient(std::span<T> /*gradient*/) const {}
-  /// Adds each side's second derivative at the present gaps and slips; what couples two sides is left out.
-  /// Friction resists further slip at least by the share `drag` of what it resists across.
-  virtual void add_curvature(TreeMatrix<T>& /*matrix*/, T /*drag*/) {}
-  /// y += the whole second derivative · x as add_curvature() found it, both sides and what couples them.
+  /// Second derivatives at the present gaps and slips, for all that follows. Friction resists further slip at
+  /// least by the share `drag` of what it resists across.
+  virtual void measure_curvature(T /*drag*/) {}
+  /// Adds each side's of them; what couples two sides is left out. Without `across` contacts that do are left
+  /// to add_rows().
+  virtual void add_curvature(TreeMatrix<T>& /*matrix*/, bool /*across*/) const {}
+  /// Appends those that bear something, with their sliding. False where there is no room.
+  virtual bool add_rows(const TreePattern& /*pattern*/, RowFactor<T>& /*rows*/) const { return true; }
+  /// y += the whole second derivative · x, both sides and what couples them.
   virtual void multiply(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
   /// y += what couples two sides · x: all that add_curvature leaves out.
   virtual void multiply_coupling(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
@@ -71,9 +80,10 @@ class ContactModel {
   virtual void multiply_bending(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
   /// Geometric term of lines that slide along each other, force·(lever·μ² − 2μw), as far as it stiffens (see
   /// Sliding): a model without it takes figures that lie across each other to where their limbs are pressed
-  /// many times as hard. Per side, and what couples two sides.
-  virtual void add_sliding(TreeMatrix<T>& /*matrix*/) const {}
+  /// many times as hard. Per side (`across` as for add_curvature), the whole, and what couples two sides.
+  virtual void add_sliding(TreeMatrix<T>& /*matrix*/, bool /*across*/) const {}
   virtual void multiply_sliding(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
+  virtual void multiply_sliding_coupling(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
 };
 
 /// With contacts.

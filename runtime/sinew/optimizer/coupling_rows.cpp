@@ -17,9 +17,11 @@ class CouplingRows final : public CouplingModel<T> {
   void collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,
                const Unknowns& unknowns, const PathAxes<T>& axes) override;
   bool empty() const override { return stencils_.empty() && tetrahedra_.empty(); }
-  bool coupled() const override { return coupled_; }
-  void add_curvature(TreeMatrix<T>& matrix) const override;
+  bool others_coupled() const override { return others_coupled_; }
+  bool coupled() const override { return loops_coupled_ || others_coupled_; }
+  void add_curvature(bool loops, TreeMatrix<T>& matrix) const override;
   void multiply(std::span<const T> x, std::span<T> y) const override;
+  bool add_rows(RowFactor<T>& rows) const override;
 
  private:
   struct Node {
@@ -28,10 +30,12 @@ class CouplingRows final : public CouplingModel<T> {
     int single = 0;  ///< a particle: its path is its own three translations along the world's axes
   };
   struct Stencils {
+    bool loop = false;
     int count = 0;
     int node[4];
     T weight[4];
     Mat3<T> curvature;
+    Mat3<T> root;  ///< of it, of loops
   };
   struct Tetrahedra {
     int node[4];
@@ -42,7 +46,7 @@ class CouplingRows final : public CouplingModel<T> {
                 const PathAxes<T>& axes);
   int cut(const int* nodes, int count, int node) const;
   void add_block(int i, int j, const Mat3<T>& block, int from, TreeMatrix<T>& matrix) const;
-  void note_coupling(const int* nodes, int count);
+  bool couples(const int* nodes, int count) const;
 
   const TreePattern* pattern_ = nullptr;
   std::vector<Node> nodes_;
@@ -50,7 +54,7 @@ class CouplingRows final : public CouplingModel<T> {
   std::vector<Stencils> stencils_;
   std::vector<Tetrahedra> tetrahedra_;
   mutable std::vector<Vec3<T>> moved_, pulled_;  ///< [node] of a product
-  bool coupled_ = false;
+  bool loops_coupled_ = false, others_coupled_ = false;
 };
 
 template <class T>
@@ -128,14 +132,15 @@ int CouplingRows<T>::cut(const int* nodes, int count, int node) const {
 }
 
 template <class T>
-void CouplingRows<T>::note_coupling(const int* nodes, int count) {
-  for (int i = 0; i < count && !coupled_; ++i)
+bool CouplingRows<T>::couples(const int* nodes, int count) const {
+  for (int i = 0; i < count; ++i)
     for (int j = 0; j < i; ++j) {
       const int a = nodes_[nodes[i]].leaf, b = nodes_[nodes[j]].leaf;
       if (a < 0 || b < 0) continue;
       const int shared = pattern_->common(a, b);
-      coupled_ = coupled_ || (shared != a && shared != b);
+      if (shared != a && shared != b) return true;
     }
+  return false;
 }
 
 template <class T>
@@ -146,25 +151,28 @@ void CouplingRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<
   stencils_.clear();
   tetrahedra_.clear();
   for (std::vector<T>& v : along_) v.clear();
-  coupled_ = false;
+  loops_coupled_ = others_coupled_ = false;
   for (const Coupling<T>* c : couplings) {
     const int first = static_cast<int>(nodes_.size());
     for (const CouplingNode<T>& node : c->nodes) add_node(node, trees, unknowns, axes);
     for (const Stencil<T>& e : c->stencils) {
       Stencils& made = stencils_.emplace_back();
+      made.loop = c->closes_slowly;
       made.count = e.count;
       for (int i = 0; i < e.count; ++i) {
         made.node[i] = first + e.node[i];
         made.weight[i] = e.weight[i];
       }
       made.curvature = stencil_curvature(*c, e);
-      note_coupling(made.node, made.count);
+      if (bool& coupled = made.loop ? loops_coupled_ : others_coupled_; !coupled)
+        coupled = couples(made.node, made.count);
+      if (made.loop) made.root = stencil_root(*c, e);
     }
     for (const Tetrahedron<T>& e : c->tetrahedra) {
       Tetrahedra& made = tetrahedra_.emplace_back();
       for (int i = 0; i < 4; ++i) made.node[i] = first + e.node[i];
       made.curvature = tetrahedron_curvature(*c, e);
-      note_coupling(made.node, 4);
+      others_coupled_ = others_coupled_ || couples(made.node, 4);
     }
   }
   moved_.resize(nodes_.size());
@@ -193,7 +201,7 @@ void CouplingRows<T>::add_block(int i, int j, const Mat3<T>& block, int from, Tr
 }
 
 template <class T>
-void CouplingRows<T>::add_curvature(TreeMatrix<T>& matrix) const {
+void CouplingRows<T>::add_curvature(bool loops, TreeMatrix<T>& matrix) const {
   const auto add = [&](const int* node, int count, const auto& block_of) {
     for (int i = 0; i < count; ++i) {
       const Node& own = nodes_[node[i]];
@@ -211,7 +219,9 @@ void CouplingRows<T>::add_curvature(TreeMatrix<T>& matrix) const {
     }
   };
   for (const Stencils& e : stencils_)
-    add(e.node, e.count, [&](int i, int j) -> Mat3<T> { return (e.weight[i] * e.weight[j]) * e.curvature; });
+    if (loops || !e.loop)
+      add(e.node, e.count,
+          [&](int i, int j) -> Mat3<T> { return (e.weight[i] * e.weight[j]) * e.curvature; });
   for (const Tetrahedra& e : tetrahedra_)
     add(e.node, 4, [&](int i, int j) -> Mat3<T> { return e.curvature.template block<3, 3>(3 * i, 3 * j); });
 }
@@ -255,6 +265,25 @@ void CouplingRows<T>::multiply(std::span<const T> x, std::span<T> y) const {
     for (int k = node.leaf; k >= 0; k = pattern_->parent[k], --e)
       y[k] += pull.x() * along_[0][e] + pull.y() * along_[1][e] + pull.z() * along_[2][e];
   }
+}
+
+template <class T>
+bool CouplingRows<T>::add_rows(RowFactor<T>& rows) const {
+  for (const Stencils& e : stencils_) {
+    if (!e.loop || e.root.isZero(T(0))) continue;
+    const auto room = rows.add(*pattern_, 3, nodes_[e.node[0]].leaf, nodes_[e.node[1]].leaf);
+    if (!room) return false;
+    for (int s = 0; s < 2; ++s) {
+      const Node& node = nodes_[e.node[s]];
+      const int size = node.leaf < 0 ? 0 : pattern_->depth[node.leaf] + 1;
+      for (int d = 0; d < size; ++d)
+        for (int row = 0; row < 3; ++row)
+          for (int a = 0; a < 3; ++a)
+            room.side[s][d * RowFactor<T>::kRows + row] +=
+                e.weight[s] * e.root(a, row) * along_[a][node.first + d];
+    }
+  }
+  return true;
 }
 
 template <class T>

@@ -2,8 +2,9 @@
 //
 // Jacobians are kept per node, not per element: a product first moves the nodes, then lets the elements pull
 // on them, then projects what every node feels on its path. What one path holds (a loop to the world or up
-// the tree, each particle's own block) also goes into the tree matrix; the rest couples unknowns that no path
-// joins and is left to conjugate gradients, as with contacts between trees.
+// the tree, each particle's own block) also goes into the tree matrix. Of the rest, which couples unknowns
+// that no path joins, loops are solved exactly (row_factor.h), and particles and solids are left to conjugate
+// gradients, as contacts between trees are.
 #pragma once
 
 #include <memory>
@@ -11,6 +12,7 @@
 
 #include "sinew/effects/coupling.h"
 #include "sinew/optimizer/problem.h"
+#include "sinew/optimizer/row_factor.h"
 
 namespace sinew {
 
@@ -28,14 +30,19 @@ class CouplingModel {
   virtual void collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,
                        const Unknowns& unknowns, const PathAxes<T>& axes) = 0;
   virtual bool empty() const = 0;
-  /// Some element has unknowns on paths that part.
+  /// Some element has unknowns on paths that part: one that is no loop, or any.
+  virtual bool others_coupled() const = 0;
   virtual bool coupled() const = 0;
 
-  /// Adds what lies within paths, without what could make the matrix indefinite: unknowns that several parted
-  /// branches of an element share are left out, as they hardly change its energy.
-  virtual void add_curvature(TreeMatrix<T>& matrix) const = 0;
+  /// Adds what lies within paths, of loops too or without them. Without what could make the matrix
+  /// indefinite: unknowns that several parted branches of an element share are left out, as they hardly
+  /// change its energy.
+  virtual void add_curvature(bool loops, TreeMatrix<T>& matrix) const = 0;
   /// y += the whole second derivative · x.
   virtual void multiply(std::span<const T> x, std::span<T> y) const = 0;
+
+  /// Appends the rows of loops that bear something. False where there is no room.
+  virtual bool add_rows(RowFactor<T>& rows) const = 0;
 };
 
 /// What couplings do in a step.

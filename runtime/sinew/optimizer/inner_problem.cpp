@@ -15,6 +15,9 @@ namespace {
 /// particles leave the tree to conjugate gradients, that costs too much.
 constexpr double kNear = 0.3, kNearOthers = 0.1;
 constexpr int kMostProducts = 80;
+/// Where conjugate gradients have taken more, contacts across paths are joined to the factor in the rest of
+/// the solve, up to so many, with so many entries of their paths.
+constexpr int kFewProducts = 8, kMostJoined = 48, kMostJoinedEntries = 2048;
 constexpr double kCgTolerance = 1e-2;  ///< of the preconditioned residual's norm
 constexpr double kCgFar = 0.1;         ///< the same, for steps longer than
 constexpr double kFar = 1e-3;          ///< m: the next pass will see another problem anyway
@@ -43,11 +46,13 @@ void InnerProblem<T>::reserve(const SolveCapacity& capacity) {
   slide_.reserve(capacity.bodies);
   unknowns_.reserve(dofs);
   axes_.reserve(dofs, capacity.path_entries);
-  for (TreeMatrix<T>* m : {&smooth_, &local_, &factor_}) m->reserve(dofs, capacity.path_entries);
+  for (TreeMatrix<T>* m : {&smooth_, &factor_}) m->reserve(dofs, capacity.path_entries);
   joints_.reserve(capacity.bodies, dofs);
   contact_rows_->reserve(capacity.contacts, capacity.contact_entries);
   if (couplings_) couplings_->reserve(capacity);
   joint_rows_.reserve(dofs * 8 + capacity.effect_rows);
+  across_.reserve(capacity.loops + std::min(capacity.contacts, kMostJoined),
+                  capacity.loop_entries + std::min(capacity.contact_entries, kMostJoinedEntries));
   path_.resize(TreePattern::padded(dofs));
   if (ellipsoid_model_) ellipsoid_model_->reserve(dofs / 3);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
@@ -60,6 +65,7 @@ void InnerProblem<T>::begin(const StepSettings<T>& settings, std::span<TreeProbl
   settings_ = &settings;
   trees_ = trees;
   factorisations = products = 0;
+  products_are_dear_ = false;
   unknowns_.clear();
   int entries = 0;
   for (const TreeProblem<T>* p : trees_) entries += p->capacity.contact_entries;
@@ -142,10 +148,7 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts,
                          [&](int k, int l, T value) { smooth_.row(k)[unknowns_.pattern.depth[l]] += value; });
   }
   if (geometry_ == Geometry::kAll) contact_rows_->add_bending(smooth_);
-  contact_rows_->add_sliding(smooth_);
-  if (!tied()) return;
-  local_.values() = smooth_.values();
-  couplings_->add_curvature(local_);
+  joins_loops_ = tied() && couplings_->coupled();
 }
 
 /// H₀ of a tree on which nothing acts but what its joints do.
@@ -230,7 +233,7 @@ void InnerProblem<T>::multiply_smooth(std::span<const T> x, std::span<T> y) {
   if (articulated_) return joints_.multiply(x, y);
   smooth_.multiply(x, y);
   if (geometry_ == Geometry::kAll && contact_rows_->coupled()) contact_rows_->multiply_bending(x, y);
-  if (contact_rows_->coupled()) contact_rows_->multiply_sliding(x, y);
+  contact_rows_->multiply_sliding(x, y);
   if (tied()) couplings_->multiply(x, y);
 }
 
@@ -272,26 +275,60 @@ bool InnerProblem<T>::factorise(const Secants& secants) {
     add_row_curvature(secants.muscles, [&](int k, int l, T value) { joints_.add_to_factor(k, l, value); });
     return joints_.factorise();
   }
-  factor_.values() = tied() ? local_.values() : smooth_.values();
-  contact_rows_->add_curvature(factor_, secants.slips);
-  if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
-  add_row_curvature(secants.muscles,
-                    [&](int k, int l, T value) { factor_.row(k)[unknowns_.pattern.depth[l]] += value; });
-  return factor_.factorise();
+  contact_rows_->measure_curvature(secants.slips);
+  joins_contacts_ = products_are_dear_ && contact_rows_->coupled();
+  for (;;) {
+    factor_.values() = smooth_.values();
+    contact_rows_->add_sliding(factor_, !joins_contacts_);
+    if (tied()) couplings_->add_curvature(!joins_loops_, factor_);
+    contact_rows_->add_curvature(factor_, !joins_contacts_);
+    if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
+    add_row_curvature(secants.muscles,
+                      [&](int k, int l, T value) { factor_.row(k)[unknowns_.pattern.depth[l]] += value; });
+    if (factor_.factorise() && join()) return true;
+    if (!joins_contacts_ && !joins_loops_) return false;
+    if (!joins_contacts_) joins_loops_ = false;
+    joins_contacts_ = products_are_dear_ = false;
+  }
+}
+
+/// Joins what couples paths to the factor, as far as that is meant to be. False where it cannot.
+template <class T>
+bool InnerProblem<T>::join() {
+  across_.clear();
+  if (joins_loops_ && !couplings_->add_rows(across_)) return false;
+  across_.allow(kMostJoined, kMostJoinedEntries);
+  if (joins_contacts_ && !contact_rows_->add_rows(unknowns_.pattern, across_)) return false;
+  return across_.factorise(factor_);
 }
 
 template <class T>
 void InnerProblem<T>::solve_factored(std::span<T> b) {
   if (articulated_)
     joints_.solve(b);
+  else if (!across_.empty())
+    across_.solve(factor_, b);
   else
     factor_.solve(b);
+}
+
+/// Whether ties couple unknowns that the factor does not, or anything does.
+template <class T>
+bool InnerProblem<T>::ties_left() const {
+  return couplings_ && (joins_loops_ ? couplings_->others_coupled() : couplings_->coupled());
+}
+
+template <class T>
+bool InnerProblem<T>::left_out() const {
+  if (ties_left()) return true;
+  if (!joins_contacts_) return contact_rows_->coupled();
+  return geometry_ == Geometry::kAll && contact_rows_->bends_across();
 }
 
 /// Whether the last factor still holds what rows curve by now; what leaves the tree it never does.
 template <class T>
 bool InnerProblem<T>::factor_holds(const Secants& secants) const {
-  return !ellipsoids_ && !(couplings_ && couplings_->coupled()) && contact_rows_->in_factor(secants.slips) &&
+  return !ellipsoids_ && !ties_left() && contact_rows_->in_factor(secants.slips, !joins_contacts_) &&
          std::all_of(joint_rows_.begin(), joint_rows_.end(),
                      [&](const JointRows& r) { return r.in_factor == r.curvature(secants.muscles); });
 }
@@ -301,14 +338,14 @@ template <class T>
 bool InnerProblem<T>::newton_step(const Secants& secants, bool reuse) {
   const bool holds = reuse && factor_holds(secants);
   if (!holds && !factorise(secants)) return false;
-  if (!holds && coupled()) return conjugate_gradients();
+  if (!holds && left_out()) return conjugate_gradients();
   for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
   solve_factored(step_);
   return true;
 }
 
-/// Solves with the whole matrix A, the factor F as preconditioner. What contacts couple is all that the two
-/// differ by, and F·direction follows from the residuals: a product costs the coupling alone. Where curvature
+/// Solves with the whole matrix A, the factor F as preconditioner. Where what contacts couple is all that the
+/// two differ by, F·direction follows from the residuals: a product costs the coupling alone. Where curvature
 /// turns negative on the way, the step so far is a descent direction (truncated Newton); false if that
 /// happens at once, or with couplings: there a pass without geometric terms gets further (hands on a wheel: 7
 /// passes instead of 10 at the 99th percentile, a massless spin between loops 20 instead of 60).
@@ -317,27 +354,30 @@ bool InnerProblem<T>::conjugate_gradients() {
   std::fill(step_.begin(), step_.end(), T(0));
   for (int k = 0; k < size(); ++k) residual_[k] = -inner_gradient_[k];
   preconditioned_ = residual_;
-  factor_.solve(preconditioned_);
+  solve_factored(preconditioned_);
   direction_ = preconditioned_;
   factored_ = residual_;
   T energy = dot<T>(residual_, preconditioned_);
   const T goal = energy * T(kCgTolerance * kCgTolerance);
-  T far = tied() ? T(0) : energy * T(kCgFar * kCgFar);
-  const int most = tied() ? std::max(kMostProducts, 2 * size()) : kMostProducts;
+  T far = ties_left() ? T(0) : energy * T(kCgFar * kCgFar);
+  const int most = ties_left() ? std::max(kMostProducts, 2 * size()) : kMostProducts;
   for (int iteration = 0; iteration < most && energy > goal; ++iteration) {
     if (energy <= far) {
       if (displacement(step_) > T(kFar)) return true;
       far = T(0);
     }
-    if (tied()) {
+    if (ties_left()) {
       multiply_full(direction_, product_);
     } else {
       product_ = factored_;
-      contact_rows_->multiply_coupling(direction_, product_);
+      if (!joins_contacts_) {
+        contact_rows_->multiply_coupling(direction_, product_);
+        contact_rows_->multiply_sliding_coupling(direction_, product_);
+      }
       if (geometry_ == Geometry::kAll) contact_rows_->multiply_bending(direction_, product_);
-      contact_rows_->multiply_sliding(direction_, product_);
     }
     ++products;
+    if (iteration == kFewProducts) products_are_dear_ = true;
     const T curvature = dot<T>(direction_, product_);
     if (!(curvature > T(0))) return iteration > 0 && !tied();
     const T length = energy / curvature;
@@ -346,7 +386,7 @@ bool InnerProblem<T>::conjugate_gradients() {
       residual_[k] -= length * product_[k];
     }
     preconditioned_ = residual_;
-    factor_.solve(preconditioned_);
+    solve_factored(preconditioned_);
     const T next = dot<T>(residual_, preconditioned_);
     const T ratio = next / energy;
     energy = next;
@@ -421,7 +461,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
     if (last) break;
     add_row_gradient(inner_gradient_);
-    if (!coupled() && remaining_step() < enough()) {
+    if (!left_out() && remaining_step() < enough()) {
       for (int k = 0; k < n; ++k) correction_[k] += residual_[k];
       break;
     }

@@ -5,8 +5,9 @@
 //
 // H₀ is inertia with the geometric terms. Minimised by Newton with an exact line search in row space until
 // its steps have shrunk to a tenth. While nothing couples two branches the matrix has the tree's sparsity and
-// is factorised exactly; contacts between trees, or between branches of one, are left to preconditioned
-// conjugate gradients with that factor (6–10 products; solver-prototype, addendum D).
+// is factorised exactly; loops that do are joined to that factor (row_factor.h); contacts between trees, or
+// between branches of one, are left to preconditioned conjugate gradients with it (6–10 products;
+// solver-prototype, addendum D), and joined where those take many.
 #pragma once
 
 #include <span>
@@ -41,7 +42,7 @@ class InnerProblem {
     return contact_rows_->bytes(capacity) + (couplings_ ? couplings_->bytes(capacity) : 0) +
            (ellipsoid_model_ ? ellipsoid_model_->bytes(capacity.dofs / 3) : 0) +
            capacity.dofs * (8 * sizeof(JointRows) + 14 * sizeof(T) + 8 * sizeof(int)) +
-           capacity.effect_rows * sizeof(JointRows) + capacity.path_entries * 9 * sizeof(T) +
+           capacity.effect_rows * sizeof(JointRows) + capacity.path_entries * 8 * sizeof(T) +
            capacity.bodies * 2 * sizeof(Vec3<T>) +
            ArticulatedMatrix<T>::bytes(capacity.bodies, capacity.dofs);
   }
@@ -126,6 +127,9 @@ class InnerProblem {
   bool rounded() const;
   bool tied() const { return couplings_ && !couplings_->empty(); }
   bool coupled() const { return contact_rows_->coupled() || (couplings_ && couplings_->coupled()); }
+  bool ties_left() const;
+  bool left_out() const;
+  bool join();
   void assemble_articulated();
   template <class Add>
   void add_joint_geometry(TreeProblem<T>& tree, const Add& add);
@@ -147,11 +151,13 @@ class InnerProblem {
   std::span<TreeProblem<T>* const> trees_;
   Unknowns unknowns_;
   PathAxes<T> axes_;
-  TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀
-  TreeMatrix<T> local_{unknowns_.pattern};   ///< H₀ + what coupling elements do within a path
+  TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀, without sliding and ties
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
-  ArticulatedMatrix<T> joints_;              ///< in place of these where nothing but joints acts on a tree
-  bool articulated_ = false;                 ///< it is
+  RowFactor<T> across_;                      ///< joined to it: loops across paths, and contacts
+  bool joins_loops_ = false, joins_contacts_ = false;
+  bool products_are_dear_ = false;  ///< conjugate gradients of this solve took many
+  ArticulatedMatrix<T> joints_;     ///< in place of these where nothing but joints acts on a tree
+  bool articulated_ = false;        ///< it is
   Geometry geometry_ = Geometry::kAll;
   int most_entries_ = 0;  ///< of contact rows, that there is memory for
   std::unique_ptr<ContactModel<T>> contact_rows_ = std::make_unique<ContactModel<T>>();

@@ -235,6 +235,8 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
   report_.converged = inner_.size() == 0;
   const double tolerance = accuracy.tolerance;
   bool geometric = !forces_mislead();
+  double shortest = std::numeric_limits<double>::infinity();  // of the steps so far
+  int stalled = 0;
   while (!report_.converged && report_.outer_passes < accuracy.max_iterations) {
     ++report_.outer_passes;
     InnerReport inner;
@@ -267,9 +269,14 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
                        !lacks_energy(*trees_[0]) && length < kExactWithin * tolerance &&
                        kLeft * length * length < kCautious * tolerance;
     const bool near = length < (inner_.has_contacts() ? kStillValidInContact : kStillValid);
-    report_.converged =
-        small || (outcome == Outcome::kFull &&
-                  (exact || (near && converge_by_simplified_newton(tolerance, length, energy))));
+    // Of what is tied or pressed by stiff springs rounding alone makes such steps (float, metres from the
+    // common origin).
+    const bool stalls = length < kRoundingFloor * tolerance && length > kStalls * shortest;
+    stalled = stalls ? stalled + 1 : 0;
+    shortest = std::min(shortest, length);
+    report_.converged = small || stalled == kMostStalled ||
+                        (outcome == Outcome::kFull &&
+                         (exact || (near && converge_by_simplified_newton(tolerance, length, energy))));
     if (outcome == Outcome::kRefused) break;
   }
   report_.factorisations = inner_.factorisations;

@@ -29,6 +29,10 @@ constexpr double kExactWithin = 10;  ///< tolerances: rounding too leaves a shar
 /// Of the energies of pushes, by which the places where they act are rounded: two that make a couple cancel,
 /// their roundings do not (a light link turned by 26 N m at an arm of 5 cm had good steps refused in float).
 constexpr double kRoundings = 4;
+/// Steps below so many tolerances that no longer shrink to this share of the shortest, so often in a row, are
+/// as near as rounding lets them.
+constexpr double kRoundingFloor = 10, kStalls = 0.5;
+constexpr int kMostStalled = 2;
 constexpr double kNegligible = 1e-3;  ///< of the tolerance: not worth an evaluation
 
 // Of its convex model (inner_problem.h)

@@ -17,6 +17,7 @@ struct SolveCapacity {
   int effect_rows = 0;                          ///< of joints, that effects bring
   int nodes = 0, stencils = 0, tetrahedra = 0;  ///< of couplings
   int node_entries = 0;                         ///< of the paths of all nodes
+  int loops = 0, loop_entries = 0;              ///< stencils of loops, and of the paths of their nodes
 
   /// Member by member.
   template <class Function>
@@ -33,7 +34,9 @@ struct SolveCapacity {
             f(a.nodes, b.nodes),
             f(a.stencils, b.stencils),
             f(a.tetrahedra, b.tetrahedra),
-            f(a.node_entries, b.node_entries)};
+            f(a.node_entries, b.node_entries),
+            f(a.loops, b.loops),
+            f(a.loop_entries, b.loop_entries)};
   }
   SolveCapacity& operator+=(const SolveCapacity& other) {
     return *this = combined(*this, other, [](int a, int b) { return a + b; });

@@ -50,6 +50,16 @@ void TreeMatrix<T>::solve(std::span<T> b) const {
   solve_by_tree<T>(*pattern_, values_.data(), b);
 }
 
+template <class T>
+void TreeMatrix<T>::solve_up(std::span<T> b) const {
+  solve_up_tree<T>(*pattern_, values_.data(), b);
+}
+
+template <class T>
+void TreeMatrix<T>::solve_down(std::span<T> y) const {
+  solve_down_tree<T>(*pattern_, values_.data(), y);
+}
+
 template class TreeMatrix<float>;
 template class TreeMatrix<double>;
 

@@ -60,6 +60,10 @@ class TreeMatrix {
   bool factorise();
   /// Solves LᵀL·x = b in place; call after factorise().
   void solve(std::span<T> b) const;
+  /// Its two halves, one after the other: Lᵀ·y = b, leaves → root, and L·x = y.
+  void solve_up(std::span<T> b) const;
+  void solve_down(std::span<T> y) const;
+  const TreePattern& pattern() const { return *pattern_; }
 
  private:
   const TreePattern* pattern_;

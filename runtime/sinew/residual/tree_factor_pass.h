@@ -59,12 +59,12 @@ auto factorise_tree(const TreePattern& p, T* values, std::span<T> diagonal) {
   return definite;
 }
 
-/// Solves LᵀL·x = b in place, with the factor that factorise_tree left. Up to the root with three unknowns at
+/// Solves Lᵀ·y = b in place, with the factor that factorise_tree left. Up to the root with three unknowns at
 /// a time where each is the next one's parent (a ball joint's), in the order of one after the other: the way
 /// is gone once for them.
 template <class T>
-void solve_by_tree(const TreePattern& p, const T* values, std::span<T> b) {
-  for (int k = p.size - 1; k >= 0;) {  // Lᵀ y = b
+void solve_up_tree(const TreePattern& p, const T* values, std::span<T> b) {
+  for (int k = p.size - 1; k >= 0;) {
     const T* last = values + p.row[k];
     int position = p.depth[k];
     const T y2 = b[k] *= last[position];
@@ -84,13 +84,25 @@ void solve_by_tree(const TreePattern& p, const T* values, std::span<T> b) {
       b[l] = b[l] - last[position] * y2 - second[position] * y1 - first[position] * y0;
     k -= 3;
   }
-  for (int k = 0; k < p.size; ++k) {  // L x = y
+}
+
+/// Solves L·x = y in place.
+template <class T>
+void solve_down_tree(const TreePattern& p, const T* values, std::span<T> y) {
+  for (int k = 0; k < p.size; ++k) {
     const T* path = values + p.row[k];
-    T sum = b[k];
+    T sum = y[k];
     int position = p.depth[k] - 1;
-    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) sum -= path[position] * b[l];
-    b[k] = sum * path[p.depth[k]];
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) sum -= path[position] * y[l];
+    y[k] = sum * path[p.depth[k]];
   }
+}
+
+/// Solves LᵀL·x = b in place.
+template <class T>
+void solve_by_tree(const TreePattern& p, const T* values, std::span<T> b) {
+  solve_up_tree<T>(p, values, b);
+  solve_down_tree<T>(p, values, b);
 }
 
 }  // namespace sinew
