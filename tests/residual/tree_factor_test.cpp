@@ -1,4 +1,4 @@
-// The branch-sparse factor against dense Eigen on random trees.
+// The branch-sparse factor, and what rows across branches add to it, against dense Eigen on random trees.
 #include "sinew/residual/tree_factor.h"
 
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "residual/random_tree.h"
+#include "sinew/residual/row_factor.h"
 
 namespace sinew {
 namespace {
@@ -68,6 +69,74 @@ TEST_P(TreeFactor, FactorHasNoFillInAndReproducesTheMatrix) {
     for (int l = k; l >= 0; l = pattern.parent[l]) factor(k, l) = matrix.row(k)[pattern.depth[l]];
   factor.diagonal() = factor.diagonal().cwiseInverse().eval();  // stored so that solves need no division
   EXPECT_LT((factor.transpose() * factor - dense).norm(), 1e-12 * dense.norm());
+}
+
+/// Rows between random unknowns of one tree, or of several, at a stiffness; added to `dense` too.
+template <class T>
+void add_rows(const TreePattern& pattern, int groups, double stiffness, Random& random,
+              Eigen::MatrixXd& dense, RowFactor<T>& out) {
+  for (int n = 0; n < groups; ++n) {
+    const int count = 1 + n % RowFactor<T>::kRows;
+    const int leaf[2] = {random.below(pattern.size), n % 5 == 0 ? -1 : random.below(pattern.size)};
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(count, pattern.size);
+    const auto room = out.add(pattern, count, leaf[0], leaf[1]);
+    ASSERT_TRUE(room);
+    for (int s = 0; s < 2; ++s)
+      for (int k = leaf[s]; k >= 0; k = pattern.parent[k])
+        for (int i = 0; i < count; ++i) {
+          const T value = static_cast<T>(std::sqrt(stiffness) * random.normal());
+          room.side[s][pattern.depth[k] * RowFactor<T>::kRows + i] = value;
+          rows(i, k) += double(value);
+        }
+    dense += rows.transpose() * rows;
+  }
+}
+
+TEST_P(TreeFactor, SolvesWithRowsAcrossPathsAsDense) {
+  constexpr int kSize = 37;
+  Random random(GetParam() + 100);
+  const TreePattern pattern = random_pattern(kSize, random);
+  Eigen::MatrixXd dense = random_matrix(pattern, random);
+  TreeMatrix<double> matrix(pattern);
+  fill(pattern, dense, matrix);
+  ASSERT_TRUE(matrix.factorise());
+  RowFactor<double> rows;
+  rows.reserve(20, 40 * kSize);
+  for (const int groups : {0, 1, 7, 20}) {
+    rows.clear();
+    Eigen::MatrixXd both = dense;
+    add_rows(pattern, groups, 100, random, both, rows);
+    ASSERT_TRUE(rows.factorise(matrix)) << groups;
+    const Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(kSize, [&] { return random.normal(); });
+    Eigen::VectorXd b = both * x;
+    rows.solve(matrix, {b.data(), kSize});
+    const double condition = both.norm() * both.inverse().norm();
+    EXPECT_LT((b - x).norm(), 1e-14 * condition * x.norm()) << groups;
+  }
+}
+
+/// What is left to conjugate gradients: rows so stiff that float would lose them, and one group too many.
+TEST_P(TreeFactor, RefusesRowsThatItCannotServe) {
+  Random random(GetParam() + 150);
+  const TreePattern pattern = random_pattern(24, random);
+  TreeMatrix<float> matrix(pattern);
+  matrix.set_zero();
+  for (int k = 0; k < 24; ++k) matrix.row(k)[pattern.depth[k]] = 1;
+  ASSERT_TRUE(matrix.factorise());
+  RowFactor<float> rows;
+  rows.reserve(4, 8 * 24);
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(24, 24);
+  rows.clear();
+  add_rows(pattern, 2, 1e7, random, dense, rows);
+  EXPECT_FALSE(rows.factorise(matrix));
+  rows.clear();
+  add_rows(pattern, 2, 100, random, dense, rows);
+  EXPECT_TRUE(rows.factorise(matrix));
+  rows.allow(1, 48);
+  EXPECT_TRUE(rows.add(pattern, 3, 5, 11));
+  EXPECT_FALSE(rows.add(pattern, 3, 5, 11));
+  rows.clear();
+  EXPECT_TRUE(rows.add(pattern, 3, 5, 11)) << "cleared";
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, TreeFactor, testing::Values(1u, 2u, 3u, 4u));

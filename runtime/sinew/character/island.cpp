@@ -30,7 +30,7 @@ constexpr int kReleaseRounds = 8;
 constexpr int kEasyPasses = 8;  ///< a solve that took more may have gone astray: see energy_error()
 constexpr int kTightenRounds = 6;
 constexpr double kSlides = 0.99;  ///< of the square of a stick: what slides as far has left no elastic slip
-constexpr int kLeastPasses = 12;  ///< of a solve, where the step has none left: 8 leave 5 cm of error
+constexpr int kLeastPasses = 12;  ///< of a part, where the step has none left: 8 leave 5 cm of error
 constexpr int kMostUnsolved = 3;  ///< as many halvings leave the least passes
 
 /// Whether no force from outside acts on it but gravity, contacts and couplings.
@@ -398,7 +398,13 @@ void IslandStepper<T>::begin_solve() {
   if (!landed_ && strikes_deep(h)) choose_guess(h);
 }
 
-/// In as many passes as the step has left.
+/// Passes that the next solve may take: what the step has left, or the part at least. What is tied is solved
+/// again for its loops, each time with that least.
+template <class T>
+int IslandStepper<T>::most_passes() const {
+  return std::max(passes_left_, couplings_.empty() ? kLeastPasses - passes_of_part_ : kLeastPasses);
+}
+
 template <class T>
 SolveReport IslandStepper<T>::solve() {
   if (const TimeScheme<T>* scheme = settings_.plan->scheme; scheme && scheme->solves()) {
@@ -409,11 +415,15 @@ SolveReport IslandStepper<T>::solve() {
     return once;
   }
   Accuracy accuracy = world_->accuracy;
-  accuracy.max_iterations = std::min(accuracy.max_iterations, std::max(passes_left_, kLeastPasses));
-  SolveReport report = solver_.solve(settings_, accuracy, problems_, contacts_, couplings_);
-  for (int round = 0; round < kTightenRounds && report.converged && tighten_loops(); ++round)
-    report.add(solver_.solve(settings_, accuracy, problems_, contacts_, couplings_));
-  passes_left_ -= report.outer_passes;
+  SolveReport report;
+  int round = 0;
+  do {
+    accuracy.max_iterations = std::min(world_->accuracy.max_iterations, most_passes());
+    const SolveReport once = solver_.solve(settings_, accuracy, problems_, contacts_, couplings_);
+    passes_left_ -= once.outer_passes;
+    passes_of_part_ += once.outer_passes;
+    report.add(once);
+  } while (round++ < kTightenRounds && report.converged && most_passes() > 0 && tighten_loops());
   return report;
 }
 
@@ -484,11 +494,12 @@ std::span<const std::uint8_t> IslandStepper<T>::find_bearing(int tree) {
 template <class T>
 SolveReport IslandStepper<T>::attempt(bool may_split) {
   const T h = settings_.h;
+  passes_of_part_ = 0;
   begin_solve();
   SolveReport total = solve();
   if (const TimeScheme<T>* scheme = settings_.plan->scheme; scheme && scheme->solves()) return total;
   for (int round = 1;; ++round) {
-    if (may_split && !total.converged && passes_left_ > 0) return total;
+    if (most_passes() <= 0 || (may_split && !total.converged && passes_left_ > 0)) return total;
     bool released = false;
     for (std::size_t n = 0; n < states_.size(); ++n) {
       CharacterState<T>* const s = states_[n];
@@ -532,7 +543,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   SolveReport solved = attempt(splits_left > 0);
   if (passes_left_ <= 0) splits_left = 0;
   total_.add(solved);
-  const bool may_restart = closed && !settings_.plan->scheme;
+  const bool may_restart = closed && !settings_.plan->scheme && most_passes() > 0;
   if (may_restart && (solved.converged || splits_left == 0) &&
       energy_error(solved.converged && solved.outer_passes <= kEasyPasses) > 0) {
     take_back_landing();

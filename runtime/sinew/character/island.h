@@ -68,6 +68,7 @@ class IslandStepper {
   bool strikes_deep(T h) const;
   void choose_guess(T h);
   void begin_solve();
+  int most_passes() const;
   SolveReport solve();
   void loosen_loops();
   bool tighten_loops();
@@ -169,7 +170,8 @@ class IslandStepper {
   bool closed_ = false;  ///< nothing can do work on the trees in this part
   double budget_ = 0;    ///< J, what they had when it began, where anybody asks
   bool all_converged_ = true;
-  int passes_left_ = 0;  ///< of the step, see Accuracy::max_passes
+  int passes_left_ = 0;     ///< of the step, see Accuracy::max_passes
+  int passes_of_part_ = 0;  ///< of all solves of the part
   int parts_ = 0, splits_ = 0, damped_ = 0, frozen_ = 0, restarts_ = 0, left_out_ = 0;
   StepSettings<T> settings_;
   std::vector<std::uint8_t> is_frozen_;  ///< [tree] in the present part

@@ -16,7 +16,7 @@ struct Accuracy {
   double shortest_part = 1.0 / 240;  ///< s; such halves are not halved below
   int max_splits = 3;                ///< an unconverged step is halved, and its halves, so often
   /// Outer passes of all solves of a substep together, those repeated with it. Beyond, nothing is halved and
-  /// each solve takes a dozen at most, and its lowest pose. After each step in a row that did not converge
+  /// each part takes a dozen at most, and its lowest pose. After each step in a row that did not converge
   /// the next one has half as many, where no loop or particle takes part.
   int max_passes = 100;
   double sink_depth = 5e-4;       ///< how deep one contact point sinks under the character's weight (m)

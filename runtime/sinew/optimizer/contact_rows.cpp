@@ -38,6 +38,7 @@ class ContactRows final : public ContactModel<T> {
   bool empty() const override { return rows_.empty(); }
   bool coupled() const override { return coupled_; }
   bool bends_across() const override { return bends_across_; }
+  bool slides_across() const override { return slides_across_; }
   void look_along(std::span<const T> direction) override;
   T slope(T t) const override;
   void move(T t) override;
@@ -53,9 +54,8 @@ class ContactRows final : public ContactModel<T> {
   void multiply_coupling(std::span<const T> x, std::span<T> y) const override;
   void add_bending(TreeMatrix<T>& matrix) const override;
   void multiply_bending(std::span<const T> x, std::span<T> y) const override;
-  void add_sliding(TreeMatrix<T>& matrix, bool across) const override;
+  void add_sliding(TreeMatrix<T>& matrix) const override;
   void multiply_sliding(std::span<const T> x, std::span<T> y) const override;
-  void multiply_sliding_coupling(std::span<const T> x, std::span<T> y) const override;
 
  private:
   struct Side {
@@ -106,10 +106,6 @@ class ContactRows final : public ContactModel<T> {
   Block block(const Row& row, T drag) const;
   Change along(const Side& side, std::span<const T> direction) const;
   void pull(const Side& side, const Block& block, const Change& change, std::span<T> y) const;
-  T slide_along(const Side& side, std::span<const T> x) const;
-  void pull_sliding(const Side& side, T force, std::span<T> y) const {
-    for (int e = side.first; e < side.first + side.count; ++e) y[unknown_[e]] += force * slide_[e];
-  }
 
   /// All that has a value per entry.
   std::array<std::vector<T>*, 7> arrays() {
@@ -122,7 +118,7 @@ class ContactRows final : public ContactModel<T> {
       move_[3];           ///< [entry] change per unknown; move_: of the contact point, world
   std::vector<T> slide_;  ///< [entry] likewise, see Slide
   int most_entries_ = 0;
-  bool coupled_ = false, bends_across_ = false;
+  bool coupled_ = false, bends_across_ = false, slides_across_ = false;
 };
 
 template <class T>
@@ -207,7 +203,7 @@ void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, 
   rows_.clear();
   unknown_.clear();
   for (std::vector<T>* v : arrays()) v->clear();
-  coupled_ = bends_across_ = false;
+  coupled_ = bends_across_ = slides_across_ = false;
   for (std::size_t n = 0; n < contacts.size(); ++n) {
     const Contact<T>& c = contacts[n];
     if (c.gap > c.length_scale * near) continue;
@@ -238,6 +234,7 @@ void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, 
     row.sliding = slide.stiffness;
     coupled_ = coupled_ || row.couples();
     bends_across_ = bends_across_ || (row.bends && row.couples());
+    slides_across_ = slides_across_ || (row.sliding > T(0) && row.couples());
     rows_.push_back(row);
   }
 }
@@ -455,9 +452,9 @@ ContactRows<T>::Slide::Slide(const Contact<T>& c) {
 }
 
 template <class T>
-void ContactRows<T>::add_sliding(TreeMatrix<T>& matrix, bool across) const {
+void ContactRows<T>::add_sliding(TreeMatrix<T>& matrix) const {
   for (const Row& row : rows_) {
-    if (row.sliding <= T(0) || (!across && row.couples())) continue;
+    if (row.sliding <= T(0)) continue;
     for (const Side& side : row.side) {
       const T* slide = slide_.data() + side.first;
       for (int i = 0; i < side.count; ++i)
@@ -467,28 +464,16 @@ void ContactRows<T>::add_sliding(TreeMatrix<T>& matrix, bool across) const {
 }
 
 template <class T>
-T ContactRows<T>::slide_along(const Side& side, std::span<const T> x) const {
-  T moved = T(0);
-  for (int e = side.first; e < side.first + side.count; ++e) moved += x[unknown_[e]] * slide_[e];
-  return moved;
-}
-
-template <class T>
 void ContactRows<T>::multiply_sliding(std::span<const T> x, std::span<T> y) const {
   for (const Row& row : rows_) {
-    if (row.sliding <= T(0)) continue;
-    const T force = row.sliding * (slide_along(row.side[0], x) + slide_along(row.side[1], x));
-    for (const Side& side : row.side) pull_sliding(side, force, y);
-  }
-}
-
-template <class T>
-void ContactRows<T>::multiply_sliding_coupling(std::span<const T> x, std::span<T> y) const {
-  for (const Row& row : rows_) {
     if (row.sliding <= T(0) || !row.couples()) continue;
-    const T a = slide_along(row.side[0], x), b = slide_along(row.side[1], x);
-    pull_sliding(row.side[0], row.sliding * b, y);
-    pull_sliding(row.side[1], row.sliding * a, y);
+    T moved[2] = {};
+    for (const int n : {0, 1})
+      for (int e = row.side[n].first; e < row.side[n].first + row.side[n].count; ++e)
+        moved[n] += x[unknown_[e]] * slide_[e];
+    for (const int n : {0, 1})
+      for (int e = row.side[n].first; e < row.side[n].first + row.side[n].count; ++e)
+        y[unknown_[e]] += row.sliding * moved[1 - n] * slide_[e];
   }
 }
 
@@ -496,14 +481,13 @@ template <class T>
 bool ContactRows<T>::add_rows(const TreePattern& pattern, RowFactor<T>& rows) const {
   constexpr int kRows = RowFactor<T>::kRows;
   for (const Row& row : rows_) {
-    if (!row.couples() || (row.curvature.zero() && row.sliding <= T(0))) continue;
+    if (!row.couples() || row.curvature.zero()) continue;
     const Block& b = row.curvature;
-    const T normal = std::sqrt(b.normal), one = std::sqrt(b.slip11), sliding = std::sqrt(row.sliding);
+    const T normal = std::sqrt(b.normal), one = std::sqrt(b.slip11);
     const T lean = one > T(0) ? b.slip12 / one : T(0);
     const T two = std::sqrt(std::max(b.slip22 - lean * lean, T(0)));
-    const int count = row.sliding > T(0) ? 4 : row.grip > T(0) ? 3 : 1;
     const auto last = [&](const Side& side) { return unknown_[side.first + side.count - 1]; };
-    const auto room = rows.add(pattern, count, last(row.side[0]), last(row.side[1]));
+    const auto room = rows.add(pattern, row.grip > T(0) ? 3 : 1, last(row.side[0]), last(row.side[1]));
     if (!room) return false;
     for (int s = 0; s < 2; ++s) {
       const Side& side = row.side[s];
@@ -513,7 +497,6 @@ bool ContactRows<T>::add_rows(const TreePattern& pattern, RowFactor<T>& rows) co
         out[0] = normal * gap_[e];
         out[1] = one * slip_[0][e] + lean * slip_[1][e];
         out[2] = two * slip_[1][e];
-        if (row.sliding > T(0)) out[3] = sliding * slide_[e];
       }
     }
   }

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "sinew/optimizer/problem.h"
-#include "sinew/optimizer/row_factor.h"
+#include "sinew/residual/row_factor.h"
 
 namespace sinew {
 
@@ -39,9 +39,10 @@ class ContactModel {
   virtual void collect(Trees /*trees*/, std::span<const Contact<T>> /*contacts*/,
                        const Unknowns& /*unknowns*/, const PathAxes<T>& /*axes*/, T /*near*/, T /*stick*/) {}
   virtual bool empty() const { return true; }
-  /// Some contact has unknowns on both sides; of one of those the surface bends.
+  /// Some contact has unknowns on both sides; of one of those the surface bends, or slides.
   virtual bool coupled() const { return false; }
   virtual bool bends_across() const { return false; }
+  virtual bool slides_across() const { return false; }
 
   /// Changes of gaps and slips along a direction, for slope() and move().
   virtual void look_along(std::span<const T> /*direction*/) {}
@@ -68,7 +69,7 @@ class ContactModel {
   /// Adds each side's of them; what couples two sides is left out. Without `across` contacts that do are left
   /// to add_rows().
   virtual void add_curvature(TreeMatrix<T>& /*matrix*/, bool /*across*/) const {}
-  /// Appends those that bear something, with their sliding. False where there is no room.
+  /// Appends those that bear something. False where there is no room.
   virtual bool add_rows(const TreePattern& /*pattern*/, RowFactor<T>& /*rows*/) const { return true; }
   /// y += the whole second derivative · x, both sides and what couples them.
   virtual void multiply(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
@@ -80,10 +81,9 @@ class ContactModel {
   virtual void multiply_bending(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
   /// Geometric term of lines that slide along each other, force·(lever·μ² − 2μw), as far as it stiffens (see
   /// Sliding): a model without it takes figures that lie across each other to where their limbs are pressed
-  /// many times as hard. Per side (`across` as for add_curvature), the whole, and what couples two sides.
-  virtual void add_sliding(TreeMatrix<T>& /*matrix*/, bool /*across*/) const {}
+  /// many times as hard. Per side, and what couples two sides.
+  virtual void add_sliding(TreeMatrix<T>& /*matrix*/) const {}
   virtual void multiply_sliding(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
-  virtual void multiply_sliding_coupling(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
 };
 
 /// With contacts.

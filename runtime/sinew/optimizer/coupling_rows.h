@@ -12,7 +12,7 @@
 
 #include "sinew/effects/coupling.h"
 #include "sinew/optimizer/problem.h"
-#include "sinew/optimizer/row_factor.h"
+#include "sinew/residual/row_factor.h"
 
 namespace sinew {
 

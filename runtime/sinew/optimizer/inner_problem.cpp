@@ -51,8 +51,7 @@ void InnerProblem<T>::reserve(const SolveCapacity& capacity) {
   contact_rows_->reserve(capacity.contacts, capacity.contact_entries);
   if (couplings_) couplings_->reserve(capacity);
   joint_rows_.reserve(dofs * 8 + capacity.effect_rows);
-  across_.reserve(capacity.loops + std::min(capacity.contacts, kMostJoined),
-                  capacity.loop_entries + std::min(capacity.contact_entries, kMostJoinedEntries));
+  across_.reserve(groups_across(capacity), entries_across(capacity));
   path_.resize(TreePattern::padded(dofs));
   if (ellipsoid_model_) ellipsoid_model_->reserve(dofs / 3);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
@@ -148,6 +147,7 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts,
                          [&](int k, int l, T value) { smooth_.row(k)[unknowns_.pattern.depth[l]] += value; });
   }
   if (geometry_ == Geometry::kAll) contact_rows_->add_bending(smooth_);
+  contact_rows_->add_sliding(smooth_);
   joins_loops_ = tied() && couplings_->coupled();
 }
 
@@ -233,7 +233,7 @@ void InnerProblem<T>::multiply_smooth(std::span<const T> x, std::span<T> y) {
   if (articulated_) return joints_.multiply(x, y);
   smooth_.multiply(x, y);
   if (geometry_ == Geometry::kAll && contact_rows_->coupled()) contact_rows_->multiply_bending(x, y);
-  contact_rows_->multiply_sliding(x, y);
+  if (contact_rows_->coupled()) contact_rows_->multiply_sliding(x, y);
   if (tied()) couplings_->multiply(x, y);
 }
 
@@ -279,13 +279,15 @@ bool InnerProblem<T>::factorise(const Secants& secants) {
   joins_contacts_ = products_are_dear_ && contact_rows_->coupled();
   for (;;) {
     factor_.values() = smooth_.values();
-    contact_rows_->add_sliding(factor_, !joins_contacts_);
     if (tied()) couplings_->add_curvature(!joins_loops_, factor_);
     contact_rows_->add_curvature(factor_, !joins_contacts_);
     if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
     add_row_curvature(secants.muscles,
                       [&](int k, int l, T value) { factor_.row(k)[unknowns_.pattern.depth[l]] += value; });
     if (factor_.factorise() && join()) return true;
+    // What loops tie and their geometric terms make indefinite: a pass without those gets further than
+    // conjugate gradients, which took thousands of products here.
+    if (joins_loops_ && geometric()) return false;
     if (!joins_contacts_ && !joins_loops_) return false;
     if (!joins_contacts_) joins_loops_ = false;
     joins_contacts_ = products_are_dear_ = false;
@@ -322,7 +324,7 @@ template <class T>
 bool InnerProblem<T>::left_out() const {
   if (ties_left()) return true;
   if (!joins_contacts_) return contact_rows_->coupled();
-  return geometry_ == Geometry::kAll && contact_rows_->bends_across();
+  return contact_rows_->slides_across() || (geometry_ == Geometry::kAll && contact_rows_->bends_across());
 }
 
 /// Whether the last factor still holds what rows curve by now; what leaves the tree it never does.
@@ -370,11 +372,9 @@ bool InnerProblem<T>::conjugate_gradients() {
       multiply_full(direction_, product_);
     } else {
       product_ = factored_;
-      if (!joins_contacts_) {
-        contact_rows_->multiply_coupling(direction_, product_);
-        contact_rows_->multiply_sliding_coupling(direction_, product_);
-      }
+      if (!joins_contacts_) contact_rows_->multiply_coupling(direction_, product_);
       if (geometry_ == Geometry::kAll) contact_rows_->multiply_bending(direction_, product_);
+      contact_rows_->multiply_sliding(direction_, product_);
     }
     ++products;
     if (iteration == kFewProducts) products_are_dear_ = true;

@@ -39,7 +39,9 @@ class InnerProblem {
   void reserve(const SolveCapacity& capacity);
   /// That reserve() takes.
   std::size_t bytes(const SolveCapacity& capacity) const {
-    return contact_rows_->bytes(capacity) + (couplings_ ? couplings_->bytes(capacity) : 0) +
+    return contact_rows_->bytes(capacity) +
+           RowFactor<T>::bytes(groups_across(capacity), entries_across(capacity)) +
+           (couplings_ ? couplings_->bytes(capacity) : 0) +
            (ellipsoid_model_ ? ellipsoid_model_->bytes(capacity.dofs / 3) : 0) +
            capacity.dofs * (8 * sizeof(JointRows) + 14 * sizeof(T) + 8 * sizeof(int)) +
            capacity.effect_rows * sizeof(JointRows) + capacity.path_entries * 8 * sizeof(T) +
@@ -93,6 +95,14 @@ class InnerProblem {
   int products = 0;        ///< of conjugate gradients, since begin()
 
  private:
+  /// Contacts across paths that are joined to a factor at most, and entries of their paths.
+  static constexpr int kMostJoined = 48, kMostJoinedEntries = 2048;
+
+  static int groups_across(const SolveCapacity& c) { return c.loops + std::min(c.contacts, kMostJoined); }
+  static int entries_across(const SolveCapacity& c) {
+    return c.loop_entries + std::min(c.contact_entries, kMostJoinedEntries);
+  }
+
   struct JointRows {
     JointRow<T> row;
     int unknown = 0;  ///< of the row's first degree of freedom
@@ -151,7 +161,7 @@ class InnerProblem {
   std::span<TreeProblem<T>* const> trees_;
   Unknowns unknowns_;
   PathAxes<T> axes_;
-  TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀, without sliding and ties
+  TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀, without ties
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
   RowFactor<T> across_;                      ///< joined to it: loops across paths, and contacts
   bool joins_loops_ = false, joins_contacts_ = false;

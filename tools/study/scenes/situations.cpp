@@ -6,6 +6,7 @@
 #include "study/scenes/at_rates.h"
 #include "study/scenes/situation.h"
 #include "study/scenes/things.h"
+#include "study/scenes/tied.h"
 
 namespace sinew::study {
 namespace {
@@ -28,27 +29,6 @@ double furthest_apart(const Played& a, const Played& b, int member = 0) {
   for (int f = 0; f < a.judge().frames(); ++f)
     most = std::max(most, apart(a.recording, member, b.recording, member, f));
   return most;
-}
-
-double deepest_between(const Judge& judge, int first, int last) {
-  return judge.worst(first, last, [&](int f) { return judge.depth_between(f); });
-}
-
-void note_times(const Played& played, Findings& found) {
-  double most = 0, sum = 0;
-  for (const scene::TelemetryRow& row : played.telemetry.rows) {
-    most = std::max(most, 1e-3 * row.microseconds);
-    sum += 1e-3 * row.microseconds;
-  }
-  found.note("longest step (ms)", most);
-  found.note("mean step (ms)", sum / double(std::max<std::size_t>(played.telemetry.rows.size(), 1)));
-}
-
-void note_passes(const Played& played, Findings& found) {
-  double passes = 0;
-  for (const scene::TelemetryRow& row : played.telemetry.rows) passes += row.report.outer_passes;
-  found.note("passes of a step, mean",
-             passes / double(std::max<std::size_t>(played.telemetry.rows.size(), 1)));
 }
 
 constexpr double kBeside = 0.1;  ///< m: nearer than that it is no bystander
@@ -340,35 +320,6 @@ void carried_crate(const Scene& scene, bool, Findings& found) {
             .norm(),
         1e-3);
   });
-}
-
-void jerked_loops(const Scene& scene, bool, Findings& found) {
-  const auto joint = [&](const char* name) {
-    return static_cast<std::size_t>(scene.characters[0].asset->skeleton.find(name));
-  };
-  const struct {
-    std::size_t hand;
-    Vec3<double> from;
-  } ropes[] = {{joint("hand_l"), {0, 3.2, 3.42}}, {joint("hand_r"), {0, 2.8, 3.42}}};
-  double least = 1e9, most = 0;
-  at_rates(scene, {30.0, 60.0, 120.0}, 1, 5e-3, found, [&](const Played& played, const Judge& judge) {
-    const Vec3<double> hinge(0, 0, 0.6);
-    double rises = 0;
-    for (int f = 1; f < judge.frames(); ++f) {
-      const auto& now = played.recording.frames[static_cast<std::size_t>(f)];
-      const auto at = [](const auto& place) {
-        return Vec3<double>(place.translation.template cast<double>());
-      };
-      found.at_most("hinge apart (m)", (at(now.props[0].world) - hinge).norm(), 1e-3);
-      for (const auto& rope : ropes)
-        found.at_most("rope longer (m)", (at(now.characters[0].model[rope.hand]) - rope.from).norm() - 1.4,
-                      1e-3);
-      rises = std::max(rises, at(now.props[1].world).z());
-    }
-    least = std::min(least, rises);
-    most = std::max(most, rises);
-  });
-  found.at_most("light crate's height, highest by lowest of 30, 60 and 120 Hz", most / least, 1.1);
 }
 
 void thrown_at_each_other(const Scene& scene, bool quick, Findings& found) {
@@ -709,23 +660,6 @@ void columns(const Scene& scene, bool, Findings& found) {
   });
 }
 
-void hanging_bridge(const Scene& scene, bool, Findings& found) {
-  at_rates(scene, kRates, 1, 5e-3, found, [&](const Played& played, const Judge& judge) {
-    const int end = judge.frames() - 1;
-    found.at_most("in each other (m)", deepest_between(judge, 1, end), 5e-3);
-    found.at_most("fastest at the end (m/s)", judge.fastest(end), 0.05);
-    note_passes(played, found);
-  });
-}
-
-void leash_too_short(const Scene& scene, bool, Findings& found) {
-  at_rates(scene, {30.0, 60.0, 120.0, 240.0}, 1, 0.1, found, [&](const Played&, const Judge& judge) {
-    const int end = judge.frames() - 1;
-    found.at_most("fastest body (m/s)", fastest_of(judge, 1, end), 3);
-    found.at_most("fastest in the last second (m/s)", fastest_of(judge, end * 3 / 4, end), 0.2);
-  });
-}
-
 }  // namespace
 
 std::vector<Situation> situations() {
@@ -749,7 +683,6 @@ std::vector<Situation> situations() {
       {"shoulder_to_shoulder", "one of three is hit from the side, and all stand again",
        shoulder_to_shoulder},
       {"carried_crate", "hands keep a crate when an arm is hit, and bring it back", carried_crate},
-      {"jerked_loops", "a seesaw's hinge and ropes that catch hands stay closed", jerked_loops},
       {"thrown_at_each_other", "two figures collide at 8 m/s", thrown_at_each_other},
       {"long_rest", "limp figures lie still", long_rest},
       {"bouncing_ball", "5/7 of the speed along the floor is left", bouncing_ball},
@@ -779,17 +712,15 @@ std::vector<Situation> situations() {
       {"thin_things", "books, boards and plates lie on each other on the floor", thin_things},
       {"getting_up", "who gets up does so on the floor, not through it", getting_up},
       {"columns", "two columns walk into each other and on", columns},
-      {"hanging_bridge", "who falls on a hanging bridge comes to rest there", hanging_bridge},
       {"moving_ground", "pushed on a walkway, a lift and a turntable they keep standing there",
        moving_ground},
       {"walk_on_boards", "what holds it is loose boards", run_on_a_platform},
       {"level_below", "who is knocked off a table stands up on the floor", level_below},
       {"walk_on_boxes", "what holds it is the ground alone, which may be boxes", run_on_a_platform},
-      {"leash_too_short", "a loop yields to a driven root", leash_too_short},
       {"led_through_each_other", "who is driven into something is driven on", moves_at_walking_pace},
   };
-  const std::vector<Situation> things = situations_of_things();
-  all.insert(all.end(), things.begin(), things.end());
+  for (const std::vector<Situation>& more : {situations_of_things(), situations_of_what_is_tied()})
+    all.insert(all.end(), more.begin(), more.end());
   return all;
 }
 

@@ -1,4 +1,4 @@
-#include "sinew/optimizer/row_factor.h"
+#include "sinew/residual/row_factor.h"
 
 #include <algorithm>
 #include <cmath>
