@@ -16,8 +16,8 @@ namespace {
 constexpr double kNear = 0.3, kNearOthers = 0.1;
 constexpr int kMostProducts = 80;
 /// Where conjugate gradients have taken more, contacts across paths are joined to the factor in the rest of
-/// the solve, up to so many, with so many entries of their paths.
-constexpr int kFewProducts = 8, kMostJoined = 48, kMostJoinedEntries = 2048;
+/// the solve.
+constexpr int kFewProducts = 8;
 constexpr double kCgTolerance = 1e-2;  ///< of the preconditioned residual's norm
 constexpr double kCgFar = 0.1;         ///< the same, for steps longer than
 constexpr double kFar = 1e-3;          ///< m: the next pass will see another problem anyway
@@ -284,10 +284,11 @@ bool InnerProblem<T>::factorise(const Secants& secants) {
     if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
     add_row_curvature(secants.muscles,
                       [&](int k, int l, T value) { factor_.row(k)[unknowns_.pattern.depth[l]] += value; });
-    if (factor_.factorise() && join()) return true;
-    // What loops tie and their geometric terms make indefinite: a pass without those gets further than
-    // conjugate gradients, which took thousands of products here.
-    if (joins_loops_ && geometric()) return false;
+    const bool definite = factor_.factorise();
+    if (definite && join()) return true;
+    // Where geometric terms of what is tied are indefinite but for the loops, a pass without them gets
+    // further than conjugate gradients, which took thousands of products there.
+    if (!definite && joins_loops_ && geometric()) return false;
     if (!joins_contacts_ && !joins_loops_) return false;
     if (!joins_contacts_) joins_loops_ = false;
     joins_contacts_ = products_are_dear_ = false;
