@@ -16,7 +16,7 @@ namespace {
 constexpr double kNear = 0.3, kNearOthers = 0.1;
 constexpr int kMostProducts = 80;
 /// Where conjugate gradients have taken more, contacts across paths are joined to the factor in the rest of
-/// the solve.
+/// the solve, if something is tied.
 constexpr int kFewProducts = 8;
 constexpr double kCgTolerance = 1e-2;  ///< of the preconditioned residual's norm
 constexpr double kCgFar = 0.1;         ///< the same, for steps longer than
@@ -276,7 +276,7 @@ bool InnerProblem<T>::factorise(const Secants& secants) {
     return joints_.factorise();
   }
   contact_rows_->measure_curvature(secants.slips);
-  joins_contacts_ = products_are_dear_ && contact_rows_->coupled();
+  joins_contacts_ = products_are_dear_ && tied() && contact_rows_->coupled();
   for (;;) {
     factor_.values() = smooth_.values();
     if (tied()) couplings_->add_curvature(!joins_loops_, factor_);

@@ -7,7 +7,7 @@
 // its steps have shrunk to a tenth. While nothing couples two branches the matrix has the tree's sparsity and
 // is factorised exactly; loops that do are joined to that factor (row_factor.h); contacts between trees, or
 // between branches of one, are left to preconditioned conjugate gradients with it (6–10 products;
-// solver-prototype, addendum D), and joined where those take many.
+// solver-prototype, addendum D), and joined where something is tied and those take many.
 #pragma once
 
 #include <span>

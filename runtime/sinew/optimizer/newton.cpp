@@ -269,9 +269,10 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
                        !lacks_energy(*trees_[0]) && length < kExactWithin * tolerance &&
                        kLeft * length * length < kCautious * tolerance;
     const bool near = length < (inner_.has_contacts() ? kStillValidInContact : kStillValid);
-    // Of what is tied or pressed by stiff springs rounding alone makes such steps (float, metres from the
-    // common origin).
-    const bool stalls = length < kRoundingFloor * tolerance && length > kStalls * shortest;
+    // Of what is tied, by springs a tenth of a millimetre of which bear a weight, rounding alone makes such
+    // steps (float, metres from the common origin).
+    const bool stalls =
+        !couplings_.empty() && length < kRoundingFloor * tolerance && length > kStalls * shortest;
     stalled = stalls ? stalled + 1 : 0;
     shortest = std::min(shortest, length);
     report_.converged = small || stalled == kMostStalled ||
