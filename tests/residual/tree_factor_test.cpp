@@ -85,7 +85,7 @@ void add_rows(const TreePattern& pattern, int groups, double stiffness, Random& 
       for (int k = leaf[s]; k >= 0; k = pattern.parent[k])
         for (int i = 0; i < count; ++i) {
           const T value = static_cast<T>(std::sqrt(stiffness) * random.normal());
-          room.side[s][pattern.depth[k] * RowFactor<T>::kRows + i] = value;
+          room.side[s][pattern.depth[k]][i] = value;
           rows(i, k) += double(value);
         }
     dense += rows.transpose() * rows;

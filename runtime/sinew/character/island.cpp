@@ -666,6 +666,7 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   const bool fine = may_divide();
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
   passes_left_ = std::max((parts * world.accuracy.max_passes >> unsolved()) - spent, 0);
+  passes_of_part_ = 0;
   for (int n = 0; n < parts; ++n)
     advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), splits);
   for (CharacterState<T>* s : states_) {

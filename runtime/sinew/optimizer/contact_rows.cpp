@@ -479,7 +479,6 @@ void ContactRows<T>::multiply_sliding(std::span<const T> x, std::span<T> y) cons
 
 template <class T>
 bool ContactRows<T>::add_rows(const TreePattern& pattern, RowFactor<T>& rows) const {
-  constexpr int kRows = RowFactor<T>::kRows;
   for (const Row& row : rows_) {
     if (!row.couples() || row.curvature.zero()) continue;
     const Block& b = row.curvature;
@@ -493,7 +492,7 @@ bool ContactRows<T>::add_rows(const TreePattern& pattern, RowFactor<T>& rows) co
       const Side& side = row.side[s];
       for (int i = 0; i < side.count; ++i) {
         const int e = side.first + i;
-        T* out = room.side[s] + (side.depth + i) * kRows;
+        auto& out = room.side[s][side.depth + i];
         out[0] = normal * gap_[e];
         out[1] = one * slip_[0][e] + lean * slip_[1][e];
         out[2] = two * slip_[1][e];

@@ -18,7 +18,7 @@ class CouplingRows final : public CouplingModel<T> {
                const Unknowns& unknowns, const PathAxes<T>& axes) override;
   bool empty() const override { return stencils_.empty() && tetrahedra_.empty(); }
   bool others_coupled() const override { return others_coupled_; }
-  bool coupled() const override { return loops_coupled_ || others_coupled_; }
+  bool loops_coupled() const override { return loops_coupled_; }
   void add_curvature(bool loops, TreeMatrix<T>& matrix) const override;
   void multiply(std::span<const T> x, std::span<T> y) const override;
   bool add_rows(RowFactor<T>& rows) const override;
@@ -271,16 +271,17 @@ template <class T>
 bool CouplingRows<T>::add_rows(RowFactor<T>& rows) const {
   for (const Stencils& e : stencils_) {
     if (!e.loop || e.root.isZero(T(0))) continue;
-    const auto room = rows.add(*pattern_, 3, nodes_[e.node[0]].leaf, nodes_[e.node[1]].leaf);
+    const int leaf[2] = {nodes_[e.node[0]].leaf, nodes_[e.node[1]].leaf};
+    if (leaf[0] < 0 && leaf[1] < 0) continue;
+    const auto room = rows.add(*pattern_, 3, leaf[0], leaf[1]);
     if (!room) return false;
     for (int s = 0; s < 2; ++s) {
       const Node& node = nodes_[e.node[s]];
-      const int size = node.leaf < 0 ? 0 : pattern_->depth[node.leaf] + 1;
+      const int size = leaf[s] < 0 ? 0 : pattern_->depth[leaf[s]] + 1;
       for (int d = 0; d < size; ++d)
         for (int row = 0; row < 3; ++row)
           for (int a = 0; a < 3; ++a)
-            room.side[s][d * RowFactor<T>::kRows + row] +=
-                e.weight[s] * e.root(a, row) * along_[a][node.first + d];
+            room.side[s][d][row] += e.weight[s] * e.root(a, row) * along_[a][node.first + d];
     }
   }
   return true;

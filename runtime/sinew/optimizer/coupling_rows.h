@@ -30,9 +30,9 @@ class CouplingModel {
   virtual void collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,
                        const Unknowns& unknowns, const PathAxes<T>& axes) = 0;
   virtual bool empty() const = 0;
-  /// Some element has unknowns on paths that part: one that is no loop, or any.
+  /// Some loop has unknowns on paths that part; some other element.
+  virtual bool loops_coupled() const = 0;
   virtual bool others_coupled() const = 0;
-  virtual bool coupled() const = 0;
 
   /// Adds what lies within paths, of loops too or without them. Without what could make the matrix
   /// indefinite: unknowns that several parted branches of an element share are left out, as they hardly

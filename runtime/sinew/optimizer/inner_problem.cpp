@@ -16,7 +16,7 @@ namespace {
 constexpr double kNear = 0.3, kNearOthers = 0.1;
 constexpr int kMostProducts = 80;
 /// Where conjugate gradients have taken more, contacts across paths are joined to the factor in the rest of
-/// the solve, if something is tied.
+/// the solve, if loops are.
 constexpr int kFewProducts = 8;
 constexpr double kCgTolerance = 1e-2;  ///< of the preconditioned residual's norm
 constexpr double kCgFar = 0.1;         ///< the same, for steps longer than
@@ -148,7 +148,7 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts,
   }
   if (geometry_ == Geometry::kAll) contact_rows_->add_bending(smooth_);
   contact_rows_->add_sliding(smooth_);
-  joins_loops_ = tied() && couplings_->coupled();
+  joins_loops_ = couplings_ && couplings_->loops_coupled();
 }
 
 /// H₀ of a tree on which nothing acts but what its joints do.
@@ -276,7 +276,7 @@ bool InnerProblem<T>::factorise(const Secants& secants) {
     return joints_.factorise();
   }
   contact_rows_->measure_curvature(secants.slips);
-  joins_contacts_ = products_are_dear_ && tied() && contact_rows_->coupled();
+  joins_contacts_ = products_are_dear_ && joins_loops_ && contact_rows_->coupled();
   for (;;) {
     factor_.values() = smooth_.values();
     if (tied()) couplings_->add_curvature(!joins_loops_, factor_);
@@ -289,7 +289,7 @@ bool InnerProblem<T>::factorise(const Secants& secants) {
     // Where geometric terms of what is tied are indefinite but for the loops, a pass without them gets
     // further than conjugate gradients, which took thousands of products there.
     if (!definite && joins_loops_ && geometric()) return false;
-    if (!joins_contacts_ && !joins_loops_) return false;
+    if (!joins_loops_) return false;
     if (!joins_contacts_) joins_loops_ = false;
     joins_contacts_ = products_are_dear_ = false;
   }
@@ -318,7 +318,7 @@ void InnerProblem<T>::solve_factored(std::span<T> b) {
 /// Whether ties couple unknowns that the factor does not, or anything does.
 template <class T>
 bool InnerProblem<T>::ties_left() const {
-  return couplings_ && (joins_loops_ ? couplings_->others_coupled() : couplings_->coupled());
+  return couplings_ && (couplings_->others_coupled() || (!joins_loops_ && couplings_->loops_coupled()));
 }
 
 template <class T>

@@ -7,7 +7,7 @@
 // its steps have shrunk to a tenth. While nothing couples two branches the matrix has the tree's sparsity and
 // is factorised exactly; loops that do are joined to that factor (row_factor.h); contacts between trees, or
 // between branches of one, are left to preconditioned conjugate gradients with it (6–10 products;
-// solver-prototype, addendum D), and joined where something is tied and those take many.
+// solver-prototype, addendum D), and joined with loops where those take many.
 #pragma once
 
 #include <span>
@@ -95,12 +95,14 @@ class InnerProblem {
   int products = 0;        ///< of conjugate gradients, since begin()
 
  private:
-  /// Contacts across paths that are joined to a factor at most, and entries of their paths.
+  /// Contacts across paths that are joined to a factor with loops at most, and entries of their paths.
   static constexpr int kMostJoined = 48, kMostJoinedEntries = 2048;
 
-  static int groups_across(const SolveCapacity& c) { return c.loops + std::min(c.contacts, kMostJoined); }
+  static int groups_across(const SolveCapacity& c) {
+    return c.loops > 0 ? c.loops + std::min(c.contacts, kMostJoined) : 0;
+  }
   static int entries_across(const SolveCapacity& c) {
-    return c.loop_entries + std::min(c.contact_entries, kMostJoinedEntries);
+    return c.loops > 0 ? c.loop_entries + std::min(c.contact_entries, kMostJoinedEntries) : 0;
   }
 
   struct JointRows {
@@ -136,7 +138,10 @@ class InnerProblem {
   void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings);
   bool rounded() const;
   bool tied() const { return couplings_ && !couplings_->empty(); }
-  bool coupled() const { return contact_rows_->coupled() || (couplings_ && couplings_->coupled()); }
+  bool coupled() const {
+    return contact_rows_->coupled() ||
+           (couplings_ && (couplings_->loops_coupled() || couplings_->others_coupled()));
+  }
   bool ties_left() const;
   bool left_out() const;
   bool join();

@@ -54,7 +54,7 @@ typename RowFactor<T>::Room RowFactor<T>::add(const TreePattern& pattern, int ro
   const int first_row = groups_.empty() ? 0 : groups_.back().first_row + groups_.back().rows;
   groups_.push_back({rows, first_row, {leaf_a, leaf_b}, {int(begin), int(begin) + size_a}});
   half_.resize(end, Quad{});
-  return {{half_[0].data() + kRows * begin, half_[0].data() + kRows * (begin + size_a)}};
+  return {{half_.data() + begin, half_.data() + begin + size_a}};
 }
 
 /// Makes a group's B its Y.
@@ -92,43 +92,44 @@ bool RowFactor<T>::add_products(const TreePattern& pattern, const Group& a, cons
   return any;
 }
 
+/// A group's rows of S, from the first group on with which it shares a path.
 template <class T>
-bool RowFactor<T>::factorise(const TreeMatrix<T>& tree) {
-  SINEW_ZONE("factorise rows");
-  products_.clear();
-  first_.clear();
-  row_.clear();
-  if (empty()) return true;
-  for (const Group& group : groups_) go_up(tree, group);
+bool RowFactor<T>::append_rows(const TreePattern& pattern, const Group& group) {
+  const int begin = static_cast<int>(products_.size());
   const int most = most_products(static_cast<int>(groups_.size()));
-  for (const Group& a : groups_) {
-    const int begin = static_cast<int>(products_.size());
-    int first = -1;  // column from which on the group's rows are stored
-    for (const Group* b = groups_.data(); b <= &a; ++b) {
-      Quad block[kRows] = {};
-      if (!add_products(tree.pattern(), a, *b, block) && first < 0 && b != &a) continue;
-      if (first < 0) {
-        first = b->first_row;
-        const int size = a.first_row - first, room = a.rows * size + a.rows * (a.rows + 1) / 2;
-        if (begin + room > most) return false;
-        products_.resize(begin + room);
-        for (int i = 0; i < a.rows; ++i) {
-          first_.push_back(first);
-          row_.push_back(begin + i * size + i * (i + 1) / 2 - first);
-        }
-      }
-      for (int i = 0; i < a.rows; ++i) {
-        T* row = products_.data() + row_[a.first_row + i] + b->first_row;
-        if (b != &a) {
-          std::copy_n(block[i].begin(), b->rows, row);
-          continue;
-        }
-        if (!(block[i][i] < kStiffest<T>)) return false;
-        std::copy_n(block[i].begin(), i + 1, row);
-        row[i] += T(1);
-      }
+  const auto begin_at = [&](int first) {
+    const int size = group.first_row - first;
+    const auto at = [&](int i) { return begin + i * size + i * (i + 1) / 2; };
+    if (at(group.rows) > most) return false;
+    for (int i = 0; i < group.rows; ++i) {
+      first_.push_back(first);
+      row_.push_back(at(i) - first);
     }
+    products_.resize(at(group.rows));
+    return true;
+  };
+  bool begun = false;
+  for (const Group* b = groups_.data(); b <= &group; ++b) {
+    const bool own = b == &group;
+    Quad block[kRows] = {};
+    if (!add_products(pattern, group, *b, block) && !begun && !own) continue;
+    if (!begun && !begin_at(b->first_row)) return false;
+    begun = true;
+    for (int i = 0; i < group.rows; ++i)
+      std::copy_n(block[i].begin(), own ? i + 1 : b->rows,
+                  products_.begin() + row_[group.first_row + i] + b->first_row);
   }
+  for (int i = group.first_row; i < group.first_row + group.rows; ++i) {
+    T& diagonal = products_[row_[i] + i];
+    if (!(diagonal < kStiffest<T>)) return false;
+    diagonal += T(1);
+  }
+  return true;
+}
+
+/// S by its factor, on the diagonal the inverse.
+template <class T>
+bool RowFactor<T>::factorise_products() {
   const int rows = static_cast<int>(row_.size());
   for (int i = 0; i < rows; ++i) {
     T* row = products_.data() + row_[i];
@@ -141,6 +142,18 @@ bool RowFactor<T>::factorise(const TreeMatrix<T>& tree) {
     }
   }
   return true;
+}
+
+template <class T>
+bool RowFactor<T>::factorise(const TreeMatrix<T>& tree) {
+  SINEW_ZONE("factorise rows");
+  products_.clear();
+  first_.clear();
+  row_.clear();
+  for (const Group& group : groups_) go_up(tree, group);
+  return std::all_of(groups_.begin(), groups_.end(),
+                     [&](const Group& group) { return append_rows(tree.pattern(), group); }) &&
+         factorise_products();
 }
 
 template <class T>

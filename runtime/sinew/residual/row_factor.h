@@ -8,7 +8,7 @@
 //
 // (Woodbury 1950). L⁻ᵀ leads from the leaves to the root, so a column of Y stays on the two paths, and S has
 // entries only where rows share one: it is stored and factorised from each row's first entry on. Internal to
-// the optimizer.
+// solves.
 #pragma once
 
 #include <array>
@@ -22,7 +22,8 @@ namespace sinew {
 template <class T>
 class RowFactor {
  public:
-  static constexpr int kRows = 4;  ///< of one group at most
+  static constexpr int kRows = 4;  ///< of one group at most: three of a loop or a contact fill a vector
+  using Quad = std::array<T, kRows>;
 
   /// Set-up for groups of rows, whose sides' paths have so many entries.
   void reserve(int groups, int entries);
@@ -37,10 +38,10 @@ class RowFactor {
   }
   bool empty() const { return groups_.empty(); }
   /// Appends a group of rows, each of whose sides moves with the path to an unknown (−1: nothing moves it).
-  /// What they are, times the root of their stiffness, is for the caller to write: [depth][kRows], zero so
+  /// What they are, times the root of their stiffness, is for the caller to write: [depth][row], zero so
   /// far. Null where it is one too many.
   struct Room {
-    T* side[2];
+    Quad* side[2];
     explicit operator bool() const { return side[0]; }
   };
   Room add(const TreePattern& pattern, int rows, int leaf_a, int leaf_b);
@@ -58,11 +59,12 @@ class RowFactor {
     int leaf[2];
     int half[2];  ///< first entry of each side's path
   };
-  using Quad = std::array<T, kRows>;
 
   static int most_products(int groups);
   void go_up(const TreeMatrix<T>& tree, const Group& group);
   bool add_products(const TreePattern& pattern, const Group& a, const Group& b, Quad (&sum)[kRows]) const;
+  bool append_rows(const TreePattern& pattern, const Group& group);
+  bool factorise_products();
 
   std::size_t most_groups_ = 0, most_entries_ = 0;
   std::vector<Group> groups_;
